@@ -1,0 +1,96 @@
+#pragma once
+
+#include <xgc/format.h>
+#include <xgc/status.h>
+
+#include <glm/vec3.hpp>
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+namespace xgc {
+
+/// A vertex stream as the file holds it: `count` elements of `format`, `stride` bytes apart.
+struct VertexStream {
+    format::StreamKind kind{};
+    format::StreamFormat format{};
+    uint32_t set = 0;
+    uint32_t stride = 0;
+    uint32_t count = 0;
+    std::span<const std::byte> bytes;
+};
+
+/// An opened asset: spans into the bytes that were opened, which must outlive it. Copying it copies
+/// no data. All of it is immutable, so any number of threads may read one view.
+///
+/// Everything in it was checked once by `open`: counts, ranges, orders and indices are safe to use
+/// without further tests (FORMAT.md lists the invariants).
+struct AssetView {
+    static constexpr uint32_t kMaxVertexStreams = 16;
+
+    std::span<const std::byte> bytes;
+    const format::AssetRecord* record = nullptr;
+    std::span<const format::LevelRecord> levels;
+    std::span<const uint32_t> bands; ///< least death level of each band, falling
+    std::span<const format::DomainRecord> domains;
+    std::span<const uint32_t> domainPatches;
+    std::span<const format::VertexRange> vertexRanges;
+    std::span<const format::PatchRecord> patches;
+    std::span<const uint32_t> patchDomains;
+    std::span<const float> patchErrors; ///< patch * levelCount + level, mesh units
+    std::span<const format::BandEnd> patchBands;
+    std::span<const format::PartRecord> parts;
+    std::span<const uint32_t> partNeighbours;
+    std::span<const format::MaterialRecord> materials;
+    std::span<const format::NodeRecord> nodes;
+    std::string_view strings;
+    std::span<const format::PageRecord> pages;
+    std::span<const format::StreamRecord> streams;
+    std::string_view provenance; ///< JSON; empty where the file has none
+
+    // Filled when pages are installed (`openAll`).
+    std::span<const glm::vec3> positions;    ///< a vertex row each
+    std::span<const uint8_t> collapseLevels; ///< a vertex row each
+    std::span<const uint8_t> birthLevels;    ///< a vertex row each, or empty
+    std::span<const uint16_t> parentsNarrow; ///< PatchRecord::firstParent + slot
+    std::span<const uint32_t> parentsWide;
+    std::span<const uint16_t> cornersNarrow; ///< PatchRecord::firstCorner + 3 * face + corner
+    std::span<const uint32_t> cornersWide;
+    std::span<const uint8_t> deaths;                           ///< PatchRecord::firstFace + face
+    std::array<VertexStream, kMaxVertexStreams> vertexStreams; ///< what a renderer uploads, position first
+    uint32_t vertexStreamCount = 0;
+
+    uint32_t levelCount() const { return record->levelCount; }
+    uint32_t patchCount() const { return record->patchCount; }
+    std::string_view text(format::Text t) const { return strings.substr(t.offset, t.bytes); }
+    /// E of a patch at a level, mesh units.
+    float error(uint32_t patch, uint32_t level) const {
+        return patchErrors[size_t(patch) * record->levelCount + level];
+    }
+    std::span<const uint32_t> domainsOf(uint32_t patch) const {
+        return patchDomains.subspan(patches[patch].firstDomain, patches[patch].domainCount);
+    }
+    std::span<const uint32_t> patchesOf(uint32_t domain) const {
+        return domainPatches.subspan(domains[domain].firstPatch, domains[domain].patchCount);
+    }
+    /// Vertex rows of a domain, and of a patch's interior (version 1: one tier).
+    format::VertexRange domainRange(uint32_t domain) const { return vertexRanges[domain]; }
+    format::VertexRange interiorRange(uint32_t patch) const {
+        return vertexRanges[size_t(record->domainCount) + patch];
+    }
+};
+
+/// Checks and opens the tables of an asset: memory safety only (ranges, orders, inclusion of
+/// domains, capacities), not the truth of its errors, which is the tool's `verify`.
+///
+/// `bytes`: at least FileHeader::tableBytes of the file, aligned to format::kAlignment, kept alive
+/// by the caller. Linear in what it reads; no allocation, no exception. On failure `out` is
+/// untouched and the status names the element.
+Status openTables(std::span<const std::byte> bytes, AssetView& out);
+
+/// `openTables`, and checks and installs every page, in place. `bytes` is the whole uncompressed
+/// file. Same contract.
+Status openAll(std::span<const std::byte> bytes, AssetView& out);
+
+} // namespace xgc

@@ -1,0 +1,273 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+/// The structs of an `.xgc` file, byte for byte. FORMAT.md states their meaning and invariants; a
+/// change here bumps kVersion and edits that page. All fields are little-endian.
+namespace xgc::format {
+
+inline constexpr std::array<unsigned char, 8> kMagic = {'X', 'G', 'C', '\r', '\n', 0x1a, '\n', 0};
+inline constexpr uint32_t kVersion = 1;
+/// Sections and pages start at multiples of this, and so must the bytes given to `open`.
+inline constexpr uint32_t kAlignment = 64;
+/// "No such element" in u32 fields.
+inline constexpr uint32_t kNone = 0xffffffffu;
+/// A collapse or death level that no state reaches.
+inline constexpr uint8_t kNever = 255;
+/// Levels 0..K with K + 1 <= kMaxLevels, so that every level is below kNever.
+inline constexpr uint32_t kMaxLevels = 254;
+inline constexpr uint32_t kMaxBands = 16;
+inline constexpr uint32_t kMaxTiers = 8;
+
+enum class SectionId : uint32_t {
+    asset = 1,           ///< one AssetRecord
+    levels = 2,          ///< LevelRecord[levelCount]
+    bands = 3,           ///< u32[bandCount]: the least death level of each band, falling
+    domains = 4,         ///< DomainRecord[domainCount], widest first
+    domainPatches = 5,   ///< u32[]: patches of each domain, rising
+    vertexRanges = 6,    ///< VertexRange[(domainCount + patchCount) * tierCount]
+    patches = 7,         ///< PatchRecord[patchCount], by part
+    patchDomains = 8,    ///< u32[]: domains of each patch, rising
+    patchErrors = 9,     ///< f32[patchCount * levelCount]
+    patchBands = 10,     ///< BandEnd[patchCount * bandCount]
+    parts = 11,          ///< PartRecord[partCount]
+    partNeighbours = 12, ///< u32[]: adjacent parts of each part, rising
+    materials = 13,      ///< MaterialRecord[materialCount], at least one
+    nodes = 14,          ///< NodeRecord[nodeCount], parents first; may be absent
+    strings = 15,        ///< UTF-8, no terminators
+    pages = 16,          ///< PageRecord[]
+    streams = 17,        ///< StreamRecord[]
+    // Reserved for later versions of the writer; a reader skips ids that it does not know.
+    mergeTree = 64,
+    contours = 65,
+    morphTargets = 66,
+    skins = 67,
+    locks = 68,
+    provenance = 69, ///< UTF-8 JSON: settings, hash of the input, version of the tool
+};
+
+enum class Codec : uint32_t { none = 0, zstd = 1, meshopt = 2 };
+
+struct FileHeader {
+    unsigned char magic[8];
+    uint32_t version;
+    uint32_t sectionCount;
+    uint64_t fileBytes;
+    uint64_t tableBytes;     ///< header, section table and all sections: pages follow
+    uint64_t headerChecksum; ///< XXH64, seed 0, of header and section table with this field zero
+    uint32_t flags;          ///< 0 in version 1
+    uint32_t reserved[5];
+};
+static_assert(sizeof(FileHeader) == 64);
+
+struct SectionRecord {
+    SectionId id;
+    Codec codec;
+    uint64_t offset;      ///< from the start of the file
+    uint64_t storedBytes; ///< in the file
+    uint64_t rawBytes;    ///< after decoding
+    uint64_t checksum;    ///< XXH64, seed 0, of the stored bytes
+    uint32_t count;       ///< elements
+    uint32_t stride;      ///< bytes an element
+};
+static_assert(sizeof(SectionRecord) == 48);
+
+enum AssetFlags : uint32_t {
+    kErrorIsEstimate = 1u << 0, ///< E is the largest sampled deviation x 1.3, not a bound
+    kInputIsClosed = 1u << 1,   ///< every edge of level 0 is used an even number of times
+};
+
+struct AssetRecord {
+    uint32_t levelCount; ///< K + 1
+    uint32_t bandCount;
+    uint32_t tierCount;
+    uint32_t pageGroupCount;
+    uint32_t domainCount;
+    uint32_t patchCount;
+    uint32_t partCount;
+    uint32_t materialCount;
+    uint32_t nodeCount;
+    uint32_t vertexCount;     ///< vertex rows (wedges), made ones included
+    uint32_t baseVertexCount; ///< rows of level 0
+    uint32_t positionCount;   ///< distinct positions of level 0
+    uint32_t faceCount;       ///< triangles of level 0
+    uint32_t maxPatchSlots;
+    uint32_t maxPatchFaces;
+    uint32_t flags; ///< AssetFlags
+    float boundsMin[3];
+    float boundsMax[3];
+    float sphereCenter[3];
+    float sphereRadius;
+    uint32_t reserved[6];
+};
+static_assert(sizeof(AssetRecord) == 128);
+
+struct LevelRecord {
+    float threshold;    ///< error threshold that the builder worked to, mesh units; 0 where it has none
+    float maxError;     ///< largest E of the level, mesh units
+    uint32_t faceCount; ///< triangles of the uniform state
+    uint32_t reserved;
+};
+static_assert(sizeof(LevelRecord) == 16);
+
+struct DomainRecord {
+    uint32_t firstPatch; ///< in domainPatches
+    uint32_t patchCount; ///< 2 or more, or 1 (open borders, promoted vertices)
+};
+static_assert(sizeof(DomainRecord) == 8);
+
+/// Rows of one domain or of one patch's interior in one tier. Entry g * tierCount + tier, where g
+/// counts the domains and then the patches.
+struct VertexRange {
+    uint32_t first;
+    uint32_t count;
+};
+static_assert(sizeof(VertexRange) == 8);
+
+enum PatchFlags : uint32_t {
+    kWideSlots = 1u << 0, ///< slots are u32 (more than 65,536 of them), else u16
+};
+
+struct PatchRecord {
+    uint32_t part;
+    uint32_t material;
+    uint32_t firstDomain; ///< in patchDomains
+    uint32_t domainCount;
+    uint32_t slotCount;         ///< vertices of its domains in list order, then of its interior
+    uint32_t interiorFaceCount; ///< faces that never touch a boundary at any level
+    uint32_t boundaryFaceCount; ///< faces that may
+    uint32_t firstFace;         ///< in the death stream; the interior faces come first
+    uint32_t firstCorner;       ///< in the narrow or wide corner stream, three a face
+    uint32_t firstParent;       ///< in the narrow or wide parent stream, one a slot
+    uint32_t pageGroup;
+    uint32_t flags;  ///< PatchFlags
+    float boxMin[3]; ///< contains the patch in every state, mesh space
+    float boxMax[3];
+    float sphereCenter[3]; ///< likewise
+    float sphereRadius;
+    float coneAxis[3]; ///< unit; normals n of the patch have dot(n, axis) >= coneCosine ...
+    float coneCosine;  ///< ... at levels <= coneLevel; -1 where there is no cone
+    uint32_t coneLevel;
+    uint32_t reserved[5];
+};
+static_assert(sizeof(PatchRecord) == 128);
+
+/// Ends of one band in a patch's two runs of faces, counted from the start of each run. Entry
+/// patch * bandCount + band.
+struct BandEnd {
+    uint32_t interior;
+    uint32_t boundary;
+};
+static_assert(sizeof(BandEnd) == 8);
+
+struct Text {
+    uint32_t offset; ///< in strings
+    uint32_t bytes;
+};
+
+struct PartRecord {
+    uint64_t stableId; ///< XXH64 of the name: the same over bakes that keep the name
+    Text name;
+    uint32_t firstPatch;
+    uint32_t patchCount;
+    uint32_t firstNeighbour; ///< in partNeighbours
+    uint32_t neighbourCount;
+    uint32_t faceCount;
+    float importance; ///< 1 by default; larger asks for finer levels
+    float area;
+    float centroid[3];
+    uint32_t reserved[2];
+};
+static_assert(sizeof(PartRecord) == 64);
+
+enum MaterialFlags : uint32_t { kDoubleSided = 1u << 0, kAlphaMask = 1u << 1, kAlphaBlend = 1u << 2 };
+
+struct MaterialRecord {
+    Text name;
+    float baseColor[4]; ///< linear
+    float metallic;
+    float roughness;
+    float emissive[3]; ///< linear
+    uint32_t flags;    ///< MaterialFlags
+};
+static_assert(sizeof(MaterialRecord) == 48);
+
+/// A node of the source scene, by name. Geometry is flattened into one space already: the transform
+/// tells where a node stood, for attaching things.
+struct NodeRecord {
+    Text name;
+    uint32_t parent; ///< kNone for roots
+    uint32_t reserved;
+    float toMesh[16]; ///< column-major, node space to mesh space
+};
+static_assert(sizeof(NodeRecord) == 80);
+
+/// A run of bytes that is loaded as a whole: a range of levels (tier 0 is the coarsest) of a group
+/// of patches. Version 1 writes one page with everything.
+struct PageRecord {
+    uint32_t tier;
+    uint32_t group;
+    uint32_t firstLevel; ///< finest level that it serves
+    uint32_t lastLevel;  ///< coarsest
+    uint64_t offset;
+    uint64_t storedBytes;
+    uint64_t rawBytes;
+    uint64_t checksum; ///< XXH64, seed 0, of the stored bytes
+    Codec codec;
+    uint32_t firstStream;
+    uint32_t streamCount;
+    uint32_t reserved;
+};
+static_assert(sizeof(PageRecord) == 64);
+
+enum class StreamKind : uint32_t {
+    // one element a vertex row
+    position = 1,
+    normal = 2,
+    tangent = 3, ///< w: handedness
+    uv = 4,
+    color = 5,
+    joints = 6,
+    weights = 7,
+    collapseLevel = 8, ///< u8, falling within each vertex range
+    birthLevel = 9,    ///< u8, rows made by the builder only; absent where there are none
+    // one element a slot of a patch
+    parentNarrow = 16, ///< u16
+    parentWide = 17,   ///< u32
+    // three elements a face
+    cornerNarrow = 18, ///< u16
+    cornerWide = 19,   ///< u32
+    // one element a face
+    death = 20, ///< u8: the first level at which the face cannot be drawn
+};
+
+enum class StreamFormat : uint32_t {
+    u8 = 1,
+    u16 = 2,
+    u32 = 3,
+    f32x2 = 4,
+    f32x3 = 5,
+    f32x4 = 6,
+    unorm8x4 = 7,
+    u16x4 = 8,
+    snorm16x2 = 9, ///< octahedral unit vector
+    snorm16x4 = 10,
+};
+
+struct StreamRecord {
+    StreamKind kind;
+    StreamFormat format;
+    uint32_t set; ///< UV, colour, joint sets count from 0
+    Codec codec;
+    uint64_t offset; ///< from the start of the page
+    uint64_t storedBytes;
+    uint64_t rawBytes;
+    uint32_t firstElement; ///< rows, slots or faces before it in coarser pages
+    uint32_t count;
+    uint32_t stride;
+    uint32_t reserved[3];
+};
+static_assert(sizeof(StreamRecord) == 64);
+
+} // namespace xgc::format

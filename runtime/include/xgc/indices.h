@@ -1,0 +1,36 @@
+#pragma once
+
+#include <xgc/asset.h>
+
+namespace xgc {
+
+/// A state of one asset: the level of each patch, `patchCount` entries below `levelCount`.
+using Levels = std::span<const uint8_t>;
+
+/// Level of a domain in a state: the least over its patches.
+uint32_t domainLevel(const AssetView& asset, uint32_t domain, Levels levels);
+
+/// Most indices that `buildIndices` can write for the patch at a level, whatever its neighbours do.
+/// Falls with the level.
+uint32_t indexCapacity(const AssetView& asset, uint32_t patch, uint32_t level);
+
+/// Scratch entries that `buildIndices` needs for any patch of the asset.
+inline uint32_t scratchCapacity(const AssetView& asset) {
+    return asset.record->maxPatchSlots;
+}
+
+/// Writes the triangle list of a patch in a state: vertex rows of the asset, three a triangle, none
+/// degenerate, front faces counter-clockwise. Patches that are built in one state meet without
+/// cracks. Returns the number of indices written.
+///
+/// `scratch`: scratchCapacity entries, overwritten; one per thread. `out`: at least
+/// `indexCapacity(asset, patch, levels[patch])` entries; the rest of it may be overwritten up to that
+/// capacity. No allocation.
+uint32_t buildIndices(const AssetView& asset, uint32_t patch, Levels levels, std::span<uint32_t> scratch,
+                      std::span<uint32_t> out);
+
+/// True where the index list of `patch` differs, or may differ, between two states: its own level
+/// changed, or a domain that it shares crossed a collapse level of one of the domain's vertices.
+bool needsRebuild(const AssetView& asset, uint32_t patch, Levels before, Levels after);
+
+} // namespace xgc

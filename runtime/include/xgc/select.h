@@ -1,0 +1,53 @@
+#pragma once
+
+#include <xgc/asset.h>
+
+#include <glm/mat4x3.hpp>
+#include <glm/mat4x4.hpp>
+
+namespace xgc {
+
+/// What selection needs of a camera: world space, perspective.
+struct View {
+    glm::vec3 eye{0};
+    /// Pixels that one world unit covers at distance one: viewport height / (2 tan(fovY / 2)).
+    float pixelsPerUnit = 1;
+};
+
+/// A perspective view. `fovY` in radians, `viewportHeight` in pixels.
+View makeView(const glm::vec3& eye, float fovY, float viewportHeight);
+
+/// Where an asset stands. Affine, any scale but zero; `maxScale` bounds how much it lengthens a vector.
+struct Placement {
+    glm::mat4x3 toWorld{1};
+    float maxScale = 1;
+};
+
+/// Computes maxScale as the largest singular value, rounded up.
+Placement makePlacement(const glm::mat4& toWorld);
+
+/// The thesis's criterion: level = the number of thresholds at or below the distance from the eye to the
+/// patch's bounding sphere, in radii of the asset's bounding sphere. Thresholds rise.
+struct DistanceBands {
+    std::span<const float> thresholds;
+};
+
+/// Level = the coarsest whose E projects to at most `pixels` at the nearest point of the patch's
+/// bounding sphere.
+struct ErrorPixels {
+    float pixels = 1;
+};
+
+/// Chooses a level for each patch. `levels`: patchCount entries, all written. Decisions use +, -, * and
+/// comparisons of floats only, so that a GPU can repeat them bit for bit. No allocation.
+void select(const AssetView& asset, const Placement& placement, const View& view, const DistanceBands& policy,
+            std::span<uint8_t> levels);
+void select(const AssetView& asset, const Placement& placement, const View& view, const ErrorPixels& policy,
+            std::span<uint8_t> levels);
+
+/// Largest projected error over the patches of a state, in pixels; infinite where the eye is inside
+/// the bounds of a patch whose error is not zero.
+float projectedError(const AssetView& asset, const Placement& placement, const View& view,
+                     std::span<const uint8_t> levels);
+
+} // namespace xgc

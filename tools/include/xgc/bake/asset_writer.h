@@ -1,0 +1,35 @@
+#pragma once
+
+#include <xgc/bake/hierarchy.h>
+
+#include <cstddef>
+#include <filesystem>
+
+namespace xgc::bake {
+
+/// E of each patch and level: entry patch * levelCount + level, mesh units, never falling with the level.
+struct PatchErrors {
+    std::vector<float> values;
+    bool estimate = true; ///< largest sampled deviation x 1.3, not a bound
+};
+
+/// Lays an asset out as runtime/FORMAT.md says: the bytes of an `.xgc` file, uncompressed. The same input gives
+/// the same bytes on any machine. `provenance` is stored as it is (JSON).
+Status layOutAsset(const Mesh& mesh, const Segmentation& parts, const Hierarchy& hierarchy, const PatchErrors& errors,
+                   bool inputIsClosed, std::string_view provenance, std::vector<std::byte>& out);
+
+/// Writes bytes beside the target and renames, so that the target is whole or untouched.
+Status writeFileAtomically(const std::filesystem::path& file, std::span<const std::byte> bytes);
+
+/// Reads a whole file, aligned for `xgc::openAll`.
+struct AlignedBytes {
+    struct Block {
+        alignas(64) std::byte bytes[64];
+    };
+    std::vector<Block> blocks;
+    size_t size = 0;
+    std::span<const std::byte> span() const { return {reinterpret_cast<const std::byte*>(blocks.data()), size}; }
+};
+Status readFile(const std::filesystem::path& file, AlignedBytes& out);
+
+} // namespace xgc::bake

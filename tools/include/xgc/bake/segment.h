@@ -1,0 +1,67 @@
+#pragma once
+
+#include <xgc/bake/mesh.h>
+
+#include <array>
+#include <filesystem>
+
+namespace xgc::bake {
+
+/// Parts of a mesh: an id per face, dense, ordered by area descending, ties by lowest face.
+struct Segmentation {
+    std::vector<uint32_t> facePart;
+    std::vector<std::string> partNames; ///< one a part, unique
+    uint32_t partCount() const { return uint32_t(partNames.size()); }
+};
+
+/// Constants of the thesis's segmentation (chapter 3) and the choices that its text leaves open.
+struct ThesisSegmentOptions {
+    /// An edge is flat where |D| <= flatTolerance * |P1 P2| (point membership test).
+    float flatTolerance = 6e-3f;
+    /// Seed saliences also from triangles that have a convex edge but are no boundary triangles.
+    bool seedFromConvexEdges = true;
+    /// The mesh is noisy where the bin [0,1[ holds at least this many times the largest other bin.
+    float noiseRatio = 2;
+    uint32_t smoothingRounds = 200; ///< at most
+    /// Regions wanted after merging; 0: Eq. 3.1 (regions of 1 % of the area or more, at least 2).
+    uint32_t partsCount = 0;
+    bool merge = true; ///< false stops after filling
+};
+
+enum class EdgeKind : uint8_t { flat, convex, concave, closed };
+
+/// What the thesis's segmentation saw on its way: for the report and for pictures of its stages.
+struct ThesisSegmentTrace {
+    std::vector<EdgeKind> edgeKinds;          ///< per topology edge, original positions
+    std::array<uint32_t, 10> triangleTypes{}; ///< faces per type of definition 1, in its order
+    std::vector<uint32_t> filledRegions;      ///< per face, after filling (last round)
+    uint32_t filledCount = 0;
+    std::array<double, 100> histogram{};      ///< relative area per bin, percent, last round
+    std::array<double, 100> firstHistogram{}; ///< of the unsmoothed mesh
+    bool noisy = false;                       ///< of the unsmoothed mesh
+    bool noisyAfterSmoothing = false;         ///< the bound on rounds was met first
+    uint32_t smoothingRounds = 0;
+    uint32_t equationCount = 0; ///< n of Eq. 3.1
+};
+
+Segmentation segmentThesis(const Mesh& mesh, const Topology& topology, const ThesisSegmentOptions& options,
+                           ThesisSegmentTrace* trace = nullptr);
+
+/// One part; a part each material, each edge-connected component.
+Segmentation segmentNone(const Mesh& mesh);
+Segmentation segmentByMaterial(const Mesh& mesh);
+Segmentation segmentByComponent(const Mesh& mesh, const Topology& topology);
+
+/// A `.seg` file: one id a line, a line for each face of the input, in its order.
+Status readSegFile(const std::filesystem::path& file, uint32_t inputFaceCount, std::vector<uint32_t>& inputLabels);
+/// As readSegFile, from memory; `name` is for messages.
+Status parseSeg(std::string_view text, const std::string& name, uint32_t inputFaceCount,
+                std::vector<uint32_t>& inputLabels);
+/// Parts from labels of the input's faces.
+Segmentation segmentByLabels(const Mesh& mesh, std::span<const uint32_t> inputLabels);
+/// Labels for the input's faces; those that welding dropped take the label of the nearest kept face in order.
+std::vector<uint32_t> inputLabels(const Mesh& mesh, const Segmentation& parts);
+/// Written beside the target and renamed.
+Status writeSegFile(const std::filesystem::path& file, std::span<const uint32_t> inputLabels);
+
+} // namespace xgc::bake

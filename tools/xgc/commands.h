@@ -1,0 +1,15 @@
+#pragma once
+
+#include <xgc/bake/status.h>
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+
+/// The subcommands of `xgc`, one file each. A file adds its options to the app and, when it is the one that was
+/// called, leaves what to do in `run`. Messages for people go to stderr, results to stdout.
+namespace xgc::tool {
+
+using Run = std::function<bake::Status()>;
+
+} // namespace xgc::tool
