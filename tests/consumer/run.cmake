@@ -1,0 +1,31 @@
+# cmake -DWORK=.. -DCXX=.. [-DINSTALL_FROM=build] [-DSOURCE=xgc] [-DBAKE=ON] -P run.cmake
+# Configures, builds and runs the consumer from nothing.
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result)
+  if(NOT result EQUAL 0)
+    string(REPLACE ";" " " line "${ARGN}")
+    message(FATAL_ERROR "failed (${result}): ${line}")
+  endif()
+endfunction()
+
+file(REMOVE_RECURSE ${WORK})
+set(build ${WORK}/build)
+set(arguments -S ${CMAKE_CURRENT_LIST_DIR} -B ${build} -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER=${CXX}
+    -DXGC_CONSUMER_BAKE=${BAKE})
+if(INSTALL_FROM)
+  run(${CMAKE_COMMAND} --install ${INSTALL_FROM} --prefix ${WORK}/installed)
+  # A tree that was moved must still work.
+  file(RENAME ${WORK}/installed ${WORK}/prefix)
+  list(APPEND arguments -DCMAKE_PREFIX_PATH=${WORK}/prefix)
+else()
+  list(APPEND arguments -DXGC_SOURCE=${SOURCE})
+endif()
+run(${CMAKE_COMMAND} ${arguments})
+run(${CMAKE_COMMAND} --build ${build})
+run(${build}/use_runtime)
+if(BAKE)
+  run(${build}/use_bake)
+endif()
+if(INSTALL_FROM)
+  run(${WORK}/prefix/bin/xgc --help)
+endif()
