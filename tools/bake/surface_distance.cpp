@@ -1,0 +1,119 @@
+#include "surface_distance.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace xgc::bake {
+namespace {
+
+constexpr uint32_t kLeafTriangles = 4;
+
+double squaredBoxDistance(const glm::dvec3& p, const glm::vec3& low, const glm::vec3& high) {
+    const glm::dvec3 d = glm::max(glm::max(glm::dvec3(low) - p, p - glm::dvec3(high)), glm::dvec3(0));
+    return glm::dot(d, d);
+}
+
+double squaredLength(const glm::dvec3& v) {
+    return glm::dot(v, v);
+}
+
+} // namespace
+
+double squaredDistance(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    const glm::dvec3 ab = b - a, ac = c - a, ap = p - a;
+    const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
+    if (d1 <= 0 && d2 <= 0) return squaredLength(ap);
+    const glm::dvec3 bp = p - b;
+    const double d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp);
+    if (d3 >= 0 && d4 <= d3) return squaredLength(bp);
+    const double vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 > d3) return squaredLength(ap - ab * (d1 / (d1 - d3)));
+    const glm::dvec3 cp = p - c;
+    const double d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
+    if (d6 >= 0 && d5 <= d6) return squaredLength(cp);
+    const double vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 > d6) return squaredLength(ap - ac * (d2 / (d2 - d6)));
+    const double va = d3 * d6 - d5 * d4;
+    const double u = d4 - d3, v = d5 - d6;
+    if (va <= 0 && u >= 0 && v >= 0 && u + v > 0) return squaredLength(bp - (c - b) * (u / (u + v)));
+    const double sum = va + vb + vc;
+    if (!(sum > 0)) return std::min({squaredLength(ap), squaredLength(bp), squaredLength(cp)});
+    return squaredLength(ap - ab * (vb / sum) - ac * (vc / sum));
+}
+
+SurfaceDistance::SurfaceDistance(std::vector<Triangle> triangles) : triangles_(std::move(triangles)) {
+    if (triangles_.empty()) return;
+    std::vector<glm::vec3> centroids(triangles_.size());
+    for (size_t i = 0; i < centroids.size(); ++i) {
+        const Triangle& t = triangles_[i];
+        centroids[i] = (t.a + t.b + t.c) / 3.0f;
+    }
+    std::vector<uint32_t> order(triangles_.size());
+    std::iota(order.begin(), order.end(), 0u);
+    nodes_.reserve(triangles_.size());
+    build(0, uint32_t(order.size()), centroids, order);
+    std::vector<Triangle> sorted(triangles_.size());
+    for (size_t i = 0; i < order.size(); ++i) sorted[i] = triangles_[order[i]];
+    triangles_ = std::move(sorted);
+}
+
+// Halves the longest side of the centroids' box at the median: the depth is log2 of the count.
+void SurfaceDistance::build(uint32_t first, uint32_t last, const std::vector<glm::vec3>& centroids,
+                            std::vector<uint32_t>& order) {
+    glm::vec3 low(std::numeric_limits<float>::max()), high(-low), centerLow = low, centerHigh = high;
+    for (uint32_t i = first; i < last; ++i) {
+        const Triangle& t = triangles_[order[i]];
+        low = glm::min(low, glm::min(t.a, glm::min(t.b, t.c)));
+        high = glm::max(high, glm::max(t.a, glm::max(t.b, t.c)));
+        centerLow = glm::min(centerLow, centroids[order[i]]);
+        centerHigh = glm::max(centerHigh, centroids[order[i]]);
+    }
+    const auto index = uint32_t(nodes_.size());
+    nodes_.push_back({low, high, first, last - first});
+    if (last - first <= kLeafTriangles) return;
+    const glm::vec3 size = centerHigh - centerLow;
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const uint32_t middle = first + (last - first) / 2;
+    std::nth_element(order.begin() + first, order.begin() + middle, order.begin() + last, [&](uint32_t a, uint32_t b) {
+        const float x = centroids[a][axis], y = centroids[b][axis];
+        return x != y ? x < y : a < b;
+    });
+    build(first, middle, centroids, order);
+    nodes_[index].first = uint32_t(nodes_.size());
+    nodes_[index].count = 0;
+    build(middle, last, centroids, order);
+}
+
+double SurfaceDistance::squared(const glm::dvec3& p, double enough) const {
+    double best = std::numeric_limits<double>::infinity();
+    if (nodes_.empty()) return best;
+    struct Entry {
+        uint32_t node;
+        double distance;
+    };
+    Entry stack[64];
+    uint32_t depth = 0;
+    stack[depth++] = {0, squaredBoxDistance(p, nodes_[0].low, nodes_[0].high)};
+    while (depth > 0 && best > enough) {
+        const Entry entry = stack[--depth];
+        if (entry.distance >= best) continue;
+        const Node& node = nodes_[entry.node];
+        if (node.count > 0) {
+            for (uint32_t i = node.first; i < node.first + node.count; ++i) {
+                const Triangle& t = triangles_[i];
+                best = std::min(best, squaredDistance(p, t.a, t.b, t.c));
+            }
+            continue;
+        }
+        Entry near{entry.node + 1, 0}, far{node.first, 0};
+        near.distance = squaredBoxDistance(p, nodes_[near.node].low, nodes_[near.node].high);
+        far.distance = squaredBoxDistance(p, nodes_[far.node].low, nodes_[far.node].high);
+        if (far.distance < near.distance) std::swap(near, far);
+        stack[depth++] = far;
+        stack[depth++] = near;
+    }
+    return best;
+}
+
+} // namespace xgc::bake
