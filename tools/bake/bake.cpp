@@ -1,0 +1,140 @@
+#include "stage_clock.h"
+#include "verdicts.h"
+
+#include <xgc/bake/bake.h>
+#include <xgc/bake/error.h>
+#include <xgc/bake/import.h>
+#include <xgc/bake/normals.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace xgc::bake {
+namespace {
+
+/// What a bake makes on its way.
+struct Work {
+    Model model;
+    Mesh mesh;
+    Topology topology;
+    Segmentation parts;
+    Hierarchy hierarchy;
+    PatchErrors errors;
+    std::vector<std::byte> bytes;
+};
+
+bool isCancelled(const BakeOptions& options) {
+    return options.cancelled && options.cancelled->load();
+}
+
+Status cancelledStatus(const BakeOptions& options) {
+    return systemError(fmt::format("interrupted: {} is untouched", options.output.string()));
+}
+
+Status prepareMesh(const BakeOptions& options, Work& work, BakeReport& report) {
+    if (Status s = weld(work.model, options.weld, work.mesh, report.weld); !s.ok()) return s;
+    work.model = Model{};
+    work.topology = buildTopology(work.mesh);
+    addMissingNormals(work.mesh, work.topology);
+    report.faces = work.mesh.faceCount();
+    report.vertices = uint32_t(work.mesh.wedgePosition.size());
+    report.positions = uint32_t(work.mesh.positions.size());
+    return {};
+}
+
+Status segment(const BakeOptions& options, Work& work, BakeReport& report) {
+    switch (options.parts) {
+    case PartSource::thesis:
+        work.parts = segmentThesis(work.mesh, work.topology, options.segment, &report.segment);
+        break;
+    case PartSource::none:
+        work.parts = segmentNone(work.mesh);
+        break;
+    case PartSource::material:
+        work.parts = segmentByMaterial(work.mesh);
+        break;
+    case PartSource::component:
+        work.parts = segmentByComponent(work.mesh, work.topology);
+        break;
+    case PartSource::labels: {
+        std::vector<uint32_t> labels;
+        if (Status s = readSegFile(options.labels, work.mesh.inputFaceCount, labels); !s.ok()) return s;
+        work.parts = segmentByLabels(work.mesh, labels);
+        break;
+    }
+    }
+    report.parts = work.parts.partCount();
+    return {};
+}
+
+Status buildHierarchy(const BakeOptions& options, Work& work, BakeReport& report) {
+    work.hierarchy = buildThesisHierarchy(work.mesh, work.topology, work.parts, options.hierarchy, &report.levels);
+    report.patches = work.hierarchy.patchCount();
+    return checkHierarchy(work.mesh, work.hierarchy);
+}
+
+Status measure(const BakeOptions& options, Work& work, BakeReport& report) {
+    work.errors = estimateErrors(work.mesh, work.hierarchy, [&](double fraction) {
+        if (options.progress) options.progress("measure", fraction);
+        return !isCancelled(options);
+    });
+    if (isCancelled(options)) return cancelledStatus(options);
+    const uint32_t levelCount = work.hierarchy.levelCount;
+    report.levelErrors.assign(levelCount, 0.0f);
+    for (size_t i = 0; i < work.errors.values.size(); ++i) {
+        float& largest = report.levelErrors[i % levelCount];
+        largest = std::max(largest, work.errors.values[i]);
+    }
+    return {};
+}
+
+/// Settings and tool version, without paths, times or thread counts: the same bake gives the same bytes.
+std::string provenance(const BakeOptions& options) {
+    nlohmann::ordered_json json;
+    json["tool"] = "xgc " XGC_VERSION;
+    json["preset"] = "thesis";
+    constexpr const char* kSources[] = {"thesis", "none", "material", "component", "file"};
+    json["parts"] = kSources[int(options.parts)];
+    json["input"] = options.input.filename().string();
+    json["weldTolerance"] = options.weld.tolerance;
+    json["lockCurvature"] = options.hierarchy.lockCurvature;
+    constexpr const char* kNorms[] = {"trace", "sum", "frobenius"};
+    json["curvature"] = kNorms[int(options.hierarchy.curvature)];
+    return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+Status layOut(const BakeOptions& options, Work& work, BakeReport& report) {
+    Status s = layOutAsset(work.mesh, work.parts, work.hierarchy, work.errors, report.weld.closed(),
+                           provenance(options), work.bytes);
+    report.fileBytes = work.bytes.size();
+    return s;
+}
+
+} // namespace
+
+Status bake(const BakeOptions& options, BakeReport& report) {
+    report = {};
+    Work work;
+    const auto stage = [&](const char* name, auto&& step) -> Status {
+        if (isCancelled(options)) return cancelledStatus(options);
+        if (options.progress) options.progress(name, 0);
+        const StageClock clock(name);
+        Status status = step();
+        report.stages.push_back(clock.stop());
+        if (options.progress) options.progress(name, 1);
+        return status;
+    };
+    Status s = stage("import", [&] { return importModel(options.input, work.model); });
+    if (s.ok()) s = stage("weld", [&] { return prepareMesh(options, work, report); });
+    if (s.ok()) s = stage("segment", [&] { return segment(options, work, report); });
+    if (s.ok()) s = stage("build", [&] { return buildHierarchy(options, work, report); });
+    if (s.ok()) s = stage("measure", [&] { return measure(options, work, report); });
+    if (s.ok()) s = stage("lay out", [&] { return layOut(options, work, report); });
+    if (s.ok()) judge(report);
+    if (s.ok()) s = stage("write", [&] { return writeFileAtomically(options.output, work.bytes); });
+    return s;
+}
+
+} // namespace xgc::bake

@@ -1,0 +1,79 @@
+#include <xgc/bake/bake.h>
+
+#include <nlohmann/json.hpp>
+
+namespace xgc::bake {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json weldJson(const WeldReport& weld) {
+    return {{"inputFaces", weld.inputFaces},
+            {"inputVertices", weld.inputVertices},
+            {"repeatedPositionFaces", weld.repeatedPositionFaces},
+            {"duplicateFaces", weld.duplicateFaces},
+            {"zeroAreaFaces", weld.zeroAreaFaces},
+            {"backToBackPairs", weld.backToBackPairs},
+            {"components", weld.components},
+            {"borderEdges", weld.borderEdges},
+            {"nonManifoldEdges", weld.nonManifoldEdges},
+            {"inconsistentEdges", weld.inconsistentEdges},
+            {"nonManifoldVertices", weld.nonManifoldVertices},
+            {"closed", weld.closed()}};
+}
+
+Json segmentJson(const ThesisSegmentTrace& trace) {
+    return {{"noisy", trace.noisy},
+            {"noisyAfterSmoothing", trace.noisyAfterSmoothing},
+            {"smoothingRounds", trace.smoothingRounds},
+            {"filledRegions", trace.filledCount},
+            {"equationCount", trace.equationCount},
+            {"triangleTypes", trace.triangleTypes},
+            {"firstHistogram", trace.firstHistogram},
+            {"histogram", trace.histogram}};
+}
+
+Json levelJson(const HierarchyLevelReport& level, float error) {
+    return {{"faces", level.faces},
+            {"error", error},
+            {"collapses", level.collapses},
+            {"linkRefused", level.linkRefused},
+            {"flipRefused", level.flipRefused},
+            {"wedgeRefused", level.wedgeRefused},
+            {"seconds", level.seconds}};
+}
+
+} // namespace
+
+std::string reportJson(const BakeOptions& options, const BakeReport& report) {
+    Json json;
+    json["input"] = options.input.string();
+    json["output"] = options.output.string();
+    json["stages"] = Json::array();
+    for (const StageReport& s : report.stages) {
+        json["stages"].push_back({{"name", s.name}, {"seconds", s.seconds}, {"peakBytes", s.peakBytes}});
+    }
+    json["faces"] = report.faces;
+    json["vertices"] = report.vertices;
+    json["positions"] = report.positions;
+    json["parts"] = report.parts;
+    json["patches"] = report.patches;
+    json["fileBytes"] = report.fileBytes;
+    json["levels"] = Json::array();
+    for (size_t l = 0; l < report.levels.size(); ++l) {
+        json["levels"].push_back(
+            levelJson(report.levels[l], l < report.levelErrors.size() ? report.levelErrors[l] : 0));
+    }
+    json["weld"] = weldJson(report.weld);
+    if (options.parts == PartSource::thesis) json["segment"] = segmentJson(report.segment);
+    json["verdicts"] = Json::array();
+    for (const Verdict& v : report.verdicts) {
+        json["verdicts"].push_back({{"severity", v.severity == Severity::warning ? "warning" : "note"},
+                                    {"what", v.what},
+                                    {"where", v.where},
+                                    {"remedy", v.remedy}});
+    }
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+} // namespace xgc::bake

@@ -1,0 +1,65 @@
+#include "verdicts.h"
+
+#include <fmt/format.h>
+
+namespace xgc::bake {
+namespace {
+
+void judgeInput(BakeReport& report) {
+    const WeldReport& weld = report.weld;
+    const auto warn = [&](uint32_t count, const char* what, const char* remedy) {
+        if (count > 0) {
+            report.verdicts.push_back({Severity::warning, fmt::format("{} {}", count, what), "input", remedy});
+        }
+    };
+    const auto note = [&](uint32_t count, const char* what, const char* remedy) {
+        if (count > 0) report.verdicts.push_back({Severity::note, fmt::format("{} {}", count, what), "input", remedy});
+    };
+    note(weld.repeatedPositionFaces, "faces with a repeated position dropped", "none needed");
+    note(weld.duplicateFaces, "duplicate faces dropped", "none needed");
+    note(weld.backToBackPairs, "back-to-back face pairs kept", "use a double-sided material instead");
+    note(weld.zeroAreaFaces, "faces without area kept", "remove them in the modelling tool");
+    warn(weld.nonManifoldEdges, "edges with more than two faces: locked, they hold detail up",
+         "separate the sheets that meet there");
+    warn(weld.inconsistentEdges, "edges whose faces wind differently: locked, they hold detail up",
+         "make the winding consistent");
+    note(weld.borderEdges, "border edges: locked by the thesis preset", "close holes that nobody sees into");
+}
+
+void judgeSegmentation(BakeReport& report) {
+    if (report.segment.noisy) {
+        report.verdicts.push_back(
+            {Severity::note,
+             fmt::format("noisy surface: {} smoothing rounds for the segmentation", report.segment.smoothingRounds),
+             "segment", "none needed: positions are unchanged"});
+    }
+    if (report.segment.noisyAfterSmoothing) {
+        report.verdicts.push_back({Severity::warning, "still noisy after the last smoothing round", "segment",
+                                   "look at the parts; give labels with --parts FILE.seg if they are not sensible"});
+    }
+}
+
+/// The thesis's hierarchy keeps boundaries, creases and apices: say so where they hold up much of the mesh.
+void judgeFloor(BakeReport& report) {
+    if (report.levels.size() < 2 || report.faces == 0) {
+        report.verdicts.push_back({Severity::warning, "no vertex may collapse: the asset has one level", "build",
+                                   "every vertex lies on a boundary, seam or crease; use fewer parts"});
+        return;
+    }
+    const double left = 100.0 * report.levels.back().faces / report.faces;
+    if (left > 50) {
+        report.verdicts.push_back({Severity::warning,
+                                   fmt::format("{:.1f} % of the faces stay at the coarsest level", left), "build",
+                                   "boundaries of parts, seams and sharp features are locked; use fewer parts"});
+    }
+}
+
+} // namespace
+
+void judge(BakeReport& report) {
+    judgeInput(report);
+    judgeSegmentation(report);
+    judgeFloor(report);
+}
+
+} // namespace xgc::bake

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <xgc/bake/bake.h>
+
+namespace xgc::bake {
+
+/// Writes the verdicts of a finished bake from what its stages reported.
+void judge(BakeReport& report);
+
+} // namespace xgc::bake

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <xgc/bake/asset_writer.h>
+#include <xgc/bake/mesh.h>
+#include <xgc/bake/segment.h>
+#include <xgc/bake/thesis_hierarchy.h>
+
+#include <atomic>
+#include <functional>
+
+namespace xgc::bake {
+
+/// Where parts come from.
+enum class PartSource { thesis, none, material, component, labels };
+
+struct BakeOptions {
+    std::filesystem::path input;
+    std::filesystem::path output;
+    PartSource parts = PartSource::thesis;
+    std::filesystem::path labels; ///< the .seg file of PartSource::labels
+    WeldOptions weld;
+    ThesisSegmentOptions segment;
+    ThesisHierarchyOptions hierarchy;
+    /// Told a stage's name and finished fraction, on the calling thread.
+    std::function<void(const char* stage, double fraction)> progress;
+    /// Set from anywhere (a signal handler) to stop at the next step; the target is then untouched.
+    const std::atomic<bool>* cancelled = nullptr;
+};
+
+struct StageReport {
+    const char* name = "";
+    double seconds = 0;
+    uint64_t peakBytes = 0; ///< resident memory of the process at its highest within the stage; 0 where unknown
+};
+
+enum class Severity { note, warning };
+
+/// Something about the asset that its maker should know, and what to do about it.
+struct Verdict {
+    Severity severity = Severity::note;
+    std::string what;
+    std::string where;
+    std::string remedy;
+};
+
+struct BakeReport {
+    std::vector<StageReport> stages;
+    WeldReport weld;
+    ThesisSegmentTrace segment; ///< of PartSource::thesis
+    std::vector<HierarchyLevelReport> levels;
+    std::vector<float> levelErrors; ///< largest E of each level, mesh units
+    uint32_t faces = 0;
+    uint32_t vertices = 0; ///< wedges
+    uint32_t positions = 0;
+    uint32_t parts = 0;
+    uint32_t patches = 0;
+    uint64_t fileBytes = 0;
+    std::vector<Verdict> verdicts;
+};
+
+/// From a model file to an `.xgc` file: import, weld, segment, build, measure, lay out, write. The target is whole or
+/// untouched. The same input and options give the same bytes on any machine at any number of threads (TBB's).
+Status bake(const BakeOptions& options, BakeReport& report);
+
+/// The report as JSON, as documented in tools/README.md.
+std::string reportJson(const BakeOptions& options, const BakeReport& report);
+
+} // namespace xgc::bake
