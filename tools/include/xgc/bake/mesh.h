@@ -41,9 +41,11 @@ struct WeldReport {
     uint32_t components = 0;
     uint32_t borderEdges = 0;         ///< one face
     uint32_t nonManifoldEdges = 0;    ///< more than two faces
+    uint32_t oddEdges = 0;            ///< an odd number of faces: borders, and non-manifold ones of 3, 5, ...
     uint32_t inconsistentEdges = 0;   ///< two faces that run along it the same way
-    uint32_t nonManifoldVertices = 0; ///< faces around it form more than one fan
-    bool closed() const { return borderEdges == 0; }
+    uint32_t nonManifoldVertices = 0; ///< the faces around it are not one fan (a chain or a ring)
+    /// Every edge is used an even number of times.
+    bool closed() const { return oddEdges == 0; }
 };
 
 struct WeldOptions {
@@ -52,8 +54,14 @@ struct WeldOptions {
     float tolerance = 0;
 };
 
-/// Welds a model by position; wedges with equal attributes become one. Refuses NaN and infinite positions
-/// (the vertex is named), more than 2^31 faces, and a model without faces. On failure `out` is untouched.
+/// Most faces of a mesh: three corners each are counted in 32 bits.
+inline constexpr uint64_t kMaxFaces = 0xffffffffu / 3;
+
+/// Welds a model by position; wedges with bitwise equal attributes (morph targets included) become one. Faces
+/// keep their order; positions and wedges are numbered by first use in it, and rows that no kept face uses are
+/// left out. A welded position is that of its first vertex. Refuses NaN and infinite positions and attributes
+/// (the vertex row and the first face that uses it are named, both counted from 0), more than kMaxFaces faces, and a
+/// model without faces. On failure `out` and `report` are untouched.
 Status weld(const Model& model, const WeldOptions& options, Mesh& out, WeldReport& report);
 
 /// Edges and incidence of a mesh over positions, any manifoldness. Offsets have one entry more than what
