@@ -132,16 +132,31 @@ uint32_t buildIndices(const AssetView& asset, uint32_t patch, Levels levels, std
                  asset.cornersNarrow.data() + record.firstCorner, scratch.data(), out.data());
 }
 
+bool patchDiffers(const AssetView& asset, uint32_t patch, uint32_t before, uint32_t after) {
+    const auto [low, high] = std::minmax(before, after);
+    if (low == high) return false;
+    const format::VertexRange range = asset.interiorRange(patch);
+    if (aliveCount(asset, range, low) != aliveCount(asset, range, high)) return true;
+    // The same vertices: the same faces, unless a death byte says otherwise.
+    const auto diesBetween = [low = low, high = high](uint8_t death) { return death > low && death <= high; };
+    const LivingRuns fine = livingRuns(asset, patch, low), coarse = livingRuns(asset, patch, high);
+    const uint8_t* deaths = asset.deaths.data() + asset.patches[patch].firstFace;
+    const uint8_t* boundary = deaths + asset.patches[patch].interiorFaceCount;
+    return std::any_of(deaths + coarse.whole.interior, deaths + fine.some.interior, diesBetween) ||
+           std::any_of(boundary + coarse.some.boundary, boundary + fine.some.boundary, diesBetween);
+}
+
+bool domainDiffers(const AssetView& asset, uint32_t domain, Levels before, Levels after) {
+    const uint32_t was = domainLevel(asset, domain, before), is = domainLevel(asset, domain, after);
+    const format::VertexRange range = asset.domainRange(domain);
+    return was != is && aliveCount(asset, range, was) != aliveCount(asset, range, is);
+}
+
 bool needsRebuild(const AssetView& asset, uint32_t patch, Levels before, Levels after) {
-    if (before[patch] != after[patch]) return true;
-    for (const uint32_t domain : asset.domainsOf(patch)) {
-        const uint32_t was = domainLevel(asset, domain, before);
-        const uint32_t is = domainLevel(asset, domain, after);
-        if (was == is) continue;
-        const format::VertexRange range = asset.domainRange(domain);
-        if (aliveCount(asset, range, was) != aliveCount(asset, range, is)) return true;
-    }
-    return false;
+    if (patchDiffers(asset, patch, before[patch], after[patch])) return true;
+    const auto differs = [&](uint32_t domain) { return domainDiffers(asset, domain, before, after); };
+    const std::span<const uint32_t> domains = asset.domainsOf(patch);
+    return std::any_of(domains.begin(), domains.end(), differs);
 }
 
 } // namespace xgc

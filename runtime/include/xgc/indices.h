@@ -29,8 +29,16 @@ inline uint32_t scratchCapacity(const AssetView& asset) {
 uint32_t buildIndices(const AssetView& asset, uint32_t patch, Levels levels, std::span<uint32_t> scratch,
                       std::span<uint32_t> out);
 
-/// True where the index list of `patch` differs, or may differ, between two states: its own level
-/// changed, or a domain that it shares crossed a collapse level of one of the domain's vertices.
+/// True where the index list of `patch` differs, or may differ, between two states: a vertex of its interior or of
+/// a domain that it shares collapses between the two levels (or a death level of its faces lies between them). A
+/// patch whose level repeats the surface of another level needs no rebuild.
 bool needsRebuild(const AssetView& asset, uint32_t patch, Levels before, Levels after);
+
+// The two halves of needsRebuild, for callers that know which patches changed level.
+
+/// True where the patch's own vertices or faces differ between two of its levels.
+bool patchDiffers(const AssetView& asset, uint32_t patch, uint32_t before, uint32_t after);
+/// True where vertices of the domain differ between two states: then all its patches need a rebuild.
+bool domainDiffers(const AssetView& asset, uint32_t domain, Levels before, Levels after);
 
 } // namespace xgc

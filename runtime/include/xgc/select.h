@@ -23,30 +23,36 @@ struct Placement {
     float maxScale = 1;
 };
 
-/// Computes maxScale as the largest singular value, rounded up.
+/// Computes maxScale as the largest singular value, rounded up. `toWorld` must be affine, finite and not zero.
 Placement makePlacement(const glm::mat4& toWorld);
 
 /// The thesis's criterion: level = the number of thresholds at or below the distance from the eye to the
-/// patch's bounding sphere, in radii of the asset's bounding sphere. Thresholds rise.
+/// patch's bounding sphere (0 inside it), in radii of the asset's bounding sphere. Thresholds rise. None: level 0
+/// everywhere; those past the asset's levels are not used.
 struct DistanceBands {
     std::span<const float> thresholds;
 };
 
 /// Level = the coarsest whose E projects to at most `pixels` at the nearest point of the patch's
-/// bounding sphere.
+/// bounding sphere; where the eye is inside the sphere, and for 0 pixels, the coarsest whose E is zero.
 struct ErrorPixels {
-    float pixels = 1;
+    float pixels = 1; ///< not negative
 };
 
-/// Chooses a level for each patch. `levels`: patchCount entries, all written. Decisions use +, -, * and
-/// comparisons of floats only, so that a GPU can repeat them bit for bit. No allocation.
+/// Chooses a level for each patch. `levels`: patchCount entries, all written. No allocation. Arguments that are
+/// negative or NaN where that has no meaning are programming errors (asserted).
+///
+/// Decisions use +, -, * and comparisons of floats only, in one fixed order, so that a GPU can repeat them bit for
+/// bit. They are exact up to rounding, as if the eye were nearer or farther by a millionth of the sum of its
+/// distance from the placement's origin and the patch's; squares that leave the range of normal floats decide for
+/// the finer level (world distances from 1e-15 to 1e15 are safe).
 void select(const AssetView& asset, const Placement& placement, const View& view, const DistanceBands& policy,
             std::span<uint8_t> levels);
 void select(const AssetView& asset, const Placement& placement, const View& view, const ErrorPixels& policy,
             std::span<uint8_t> levels);
 
-/// Largest projected error over the patches of a state, in pixels; infinite where the eye is inside
-/// the bounds of a patch whose error is not zero.
+/// Largest projected error over the patches of a state, in pixels, in double precision; infinite where the eye is
+/// inside the bounds of a patch whose error is not zero.
 float projectedError(const AssetView& asset, const Placement& placement, const View& view,
                      std::span<const uint8_t> levels);
 
