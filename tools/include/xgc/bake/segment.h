@@ -4,6 +4,10 @@
 
 #include <array>
 #include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace xgc::bake {
 
@@ -47,19 +51,22 @@ struct ThesisSegmentTrace {
 Segmentation segmentThesis(const Mesh& mesh, const Topology& topology, const ThesisSegmentOptions& options,
                            ThesisSegmentTrace* trace = nullptr);
 
-/// One part; a part each material, each edge-connected component.
+/// One part, "all"; a part each material, named after it (made unique); a part each edge-connected component,
+/// "component-0" the largest.
 Segmentation segmentNone(const Mesh& mesh);
 Segmentation segmentByMaterial(const Mesh& mesh);
 Segmentation segmentByComponent(const Mesh& mesh, const Topology& topology);
 
-/// A `.seg` file: one id a line, a line for each face of the input, in its order.
+/// A `.seg` file: one id a line, a line for each face of the input, in its order. Blanks around an id, CRLF and
+/// empty lines at the end are accepted. On failure `inputLabels` is untouched and the message names the line.
 Status readSegFile(const std::filesystem::path& file, uint32_t inputFaceCount, std::vector<uint32_t>& inputLabels);
 /// As readSegFile, from memory; `name` is for messages.
 Status parseSeg(std::string_view text, const std::string& name, uint32_t inputFaceCount,
                 std::vector<uint32_t>& inputLabels);
-/// Parts from labels of the input's faces.
+/// Parts from labels of the input's faces, "label-N" after them.
 Segmentation segmentByLabels(const Mesh& mesh, std::span<const uint32_t> inputLabels);
-/// Labels for the input's faces; those that welding dropped take the label of the nearest kept face in order.
+/// Labels for the input's faces. Of a polygon's triangles the first decides; faces that welding dropped take the
+/// label of the nearest kept face in order, of two the one before.
 std::vector<uint32_t> inputLabels(const Mesh& mesh, const Segmentation& parts);
 /// Written beside the target and renamed.
 Status writeSegFile(const std::filesystem::path& file, std::span<const uint32_t> inputLabels);
