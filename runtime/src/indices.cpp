@@ -62,7 +62,8 @@ uint32_t* emitSolid(const Slot* corners, uint32_t first, uint32_t last, const ui
         out[0] = a;
         out[1] = b;
         out[2] = c;
-        out += (a != b) & (b != c) & (c != a) ? 3 : 0;
+        const bool solid = (a != b) & (b != c) & (c != a);
+        out += solid ? 3 : 0;
     }
     return out;
 }
