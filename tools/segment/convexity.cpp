@@ -14,6 +14,7 @@ constexpr int kNeedleChain = 8;
 struct Plane {
     glm::dvec3 normal{0}; ///< unit, or zero where the face has none
     uint32_t longestEdge = 0;
+    bool needle = false;
 };
 
 Plane planeOf(const glm::uvec3& corners, const glm::uvec3& edges, bool turned, std::span<const glm::dvec3> positions) {
@@ -27,7 +28,8 @@ Plane planeOf(const glm::uvec3& corners, const glm::uvec3& edges, bool turned, s
     const double area = glm::length(cross);
     Plane plane;
     plane.longestEdge = edges[longest];
-    if (area > kNeedle * glm::dot(side[longest], side[longest])) plane.normal = cross / (turned ? -area : area);
+    plane.needle = !(area > kNeedle * glm::dot(side[longest], side[longest]));
+    if (!plane.needle) plane.normal = cross / (turned ? -area : area);
     return plane;
 }
 
@@ -57,6 +59,13 @@ std::vector<Plane> facePlanes(const Mesh& mesh, const Topology& topology, const 
     return planes;
 }
 
+/// Which of an edge's faces gives N1: the first, but rather a needle, since its far corner lies in the plane of any
+/// neighbour and says nothing.
+int testedFace(const Plane& a, const Plane& b) {
+    if (!hasNormal(a)) return 1;
+    return b.needle && !a.needle && hasNormal(b) ? 1 : 0;
+}
+
 uint32_t oppositeCorner(const Mesh& mesh, const glm::uvec2& edge, uint32_t face) {
     const glm::uvec3 c = mesh.facePositions(face);
     for (int k = 0; k < 2; ++k) {
@@ -74,11 +83,11 @@ std::vector<EdgeKind> classifyEdges(const Mesh& mesh, const Topology& topology, 
     for (uint32_t e = 0; e < topology.edges.size(); ++e) {
         const std::span<const uint32_t> faces = topology.facesOfEdge(e);
         if (faces.size() != 2 || orientation.edgeConflict[e]) continue;
-        if (!hasNormal(planes[faces[0]]) && !hasNormal(planes[faces[1]])) {
+        const int first = testedFace(planes[faces[0]], planes[faces[1]]);
+        if (!hasNormal(planes[faces[first]])) {
             kinds[e] = EdgeKind::flat;
             continue;
         }
-        const int first = hasNormal(planes[faces[0]]) ? 0 : 1;
         const glm::dvec3 p1 = positions[oppositeCorner(mesh, topology.edges[e], faces[first])];
         const glm::dvec3 p2 = positions[oppositeCorner(mesh, topology.edges[e], faces[1 - first])];
         const double d = glm::dot(planes[faces[first]].normal, p2 - p1);
