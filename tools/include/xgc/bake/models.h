@@ -4,10 +4,16 @@
 
 namespace xgc::bake {
 
-/// The bundled models, made by code, the same on any machine.
-enum class BundledModel { creature, shaft, terrain, temple };
+/// The bundled models, made by code: the same bits on any machine and compiler.
+enum class BundledModel {
+    creature, ///< a small dragon, blended implicit surfaces: closed manifold, smooth, vertex colours
+};
 
-/// Makes a model of about `faces` triangles (within some 10 %).
+/// Faces that can be asked for.
+inline constexpr uint32_t kLeastModelFaces = 200;
+inline constexpr uint32_t kMostModelFaces = 8'000'000;
+
+/// Makes a model of about `faces` triangles (within 10 %), clamped to the limits.
 Model makeModel(BundledModel which, uint32_t faces);
 
 } // namespace xgc::bake
