@@ -1,25 +1,31 @@
 #pragma once
 
 #include <xgc/bake/hierarchy.h>
+#include <xgc/bake/xgc_mesh.h>
 
 namespace xgc::bake {
 
-/// How the thesis's curvature K of a vertex comes from the covariance matrix of its face normals.
-enum class CurvatureNorm {
-    trace,     ///< sqrt of the trace: does not depend on rotation
-    sum,       ///< sqrt of the sum of all entries: reproduces the thesis's figures, depends on rotation
-    frobenius, ///< sqrt of the sum of squared entries, as printed in Eq. 4.4
-};
-
 struct ThesisHierarchyOptions {
     CurvatureNorm curvature = CurvatureNorm::trace;
-    float lockCurvature = 0.5f; ///< vertices with K at or above it are locked with their edges
-    uint32_t maxLevels = 32;    ///< levels above 0, at most; building stops where no part collapses any more
+    float lockCurvature = 0.5f;    ///< vertices with K at or above it are locked with their edges
+    float lockDihedralCosine = -1; ///< see XgcOptions; -1 locks none
+    uint32_t maxLevels = 32;       ///< levels above 0, at most; building stops where no part collapses any more
 };
 
-/// Builds the thesis's hierarchy (chapter 4) with XgcMesh and converts it. One patch for each part and material.
+/// One patch for each part and material that meet in a face, ordered by part, then material.
+struct PatchAssignment {
+    std::vector<Patch> patches;
+    std::vector<uint32_t> facePatch;
+};
+PatchAssignment patchesOfParts(const Mesh& mesh, const Segmentation& parts);
+
+/// Builds the thesis's hierarchy (chapter 4) with XgcMesh and converts it: patches are its segments. A patch that
+/// stalls before the others stays as it is at the levels that follow. `report`: an entry a level.
 Hierarchy buildThesisHierarchy(const Mesh& mesh, const Topology& topology, const Segmentation& parts,
                                const ThesisHierarchyOptions& options,
                                std::vector<HierarchyLevelReport>* report = nullptr);
+
+/// The runtime form of a mesh at the levels at which its segments stand: none may have been refined on the way.
+Hierarchy convertToHierarchy(const Mesh& mesh, const XgcMesh& simplified, const PatchAssignment& assignment);
 
 } // namespace xgc::bake

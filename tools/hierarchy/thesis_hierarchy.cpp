@@ -1,0 +1,141 @@
+#include <xgc/bake/thesis_hierarchy.h>
+
+#include "hierarchy/average_attributes.h"
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <map>
+
+namespace xgc::bake {
+
+namespace {
+
+class Stopwatch {
+public:
+    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+HierarchyLevelReport levelReport(const XgcMesh& mesh, const XgcPass& pass, double seconds) {
+    return {mesh.faceCount(), pass.collapses, pass.linkRefused, pass.flipRefused, pass.wedgeRefused, seconds};
+}
+
+/// Gives each position the set of patches of its faces.
+void assignDomains(const Mesh& mesh, Hierarchy& h) {
+    std::vector<std::pair<uint32_t, uint32_t>> incidences; // position, patch
+    incidences.reserve(3 * mesh.faces.size());
+    std::vector<uint32_t> only(mesh.positions.size(), kNone); // the first patch seen
+    for (uint32_t f = 0; f < mesh.faceCount(); ++f) {
+        const glm::uvec3 corners = mesh.facePositions(f);
+        for (int k = 0; k < 3; ++k) {
+            uint32_t& first = only[corners[k]];
+            if (first == kNone) first = h.facePatch[f];
+            if (first != h.facePatch[f]) incidences.emplace_back(corners[k], h.facePatch[f]);
+        }
+    }
+    std::sort(incidences.begin(), incidences.end());
+    incidences.erase(std::unique(incidences.begin(), incidences.end()), incidences.end());
+    std::map<std::vector<uint32_t>, uint32_t> known;
+    std::vector<uint32_t> domainOfPatch(h.patches.size(), kNone);
+    const auto intern = [&](const std::vector<uint32_t>& patches) {
+        const auto [entry, isNew] = known.try_emplace(patches, uint32_t(h.domainPatches.size()));
+        if (isNew) h.domainPatches.push_back(patches);
+        return entry->second;
+    };
+    size_t next = 0;
+    for (uint32_t p = 0; p < mesh.positions.size(); ++p) {
+        const uint32_t first = only[p] == kNone ? 0 : only[p]; // no face: any will do
+        if (next == incidences.size() || incidences[next].first != p) {
+            uint32_t& domain = domainOfPatch[first];
+            if (domain == kNone) domain = intern({first});
+            h.domain[p] = domain;
+            continue;
+        }
+        std::vector<uint32_t> patches{first};
+        for (; next < incidences.size() && incidences[next].first == p; ++next)
+            patches.push_back(incidences[next].second);
+        std::sort(patches.begin(), patches.end());
+        h.domain[p] = intern(patches);
+    }
+}
+
+/// Adds the vertices that interior collapses made, children first.
+void addMadeVertices(const XgcMesh& x, Hierarchy& h) {
+    const std::span<const XgcMesh::Vertex> vertices = x.vertices();
+    for (uint32_t v = x.baseVertexCount(); v < vertices.size(); ++v) {
+        const Genealogy& g = x.genealogies()[vertices[v].genealogy];
+        const auto [i, j] = g.ancestors;
+        h.positions.push_back(vertices[v].position);
+        h.birthLevel.push_back(g.level);
+        h.collapseLevel.push_back(kNeverCollapses);
+        h.domain.push_back(h.domain[i]);
+        h.wedgePosition.push_back(v);
+        h.wedgeParent.push_back(kNone);
+        appendAverage(h.attributes, vertices[i].wedge, vertices[j].wedge);
+    }
+}
+
+} // namespace
+
+PatchAssignment patchesOfParts(const Mesh& mesh, const Segmentation& parts) {
+    assert(parts.facePart.size() == mesh.faces.size());
+    PatchAssignment out;
+    std::map<std::pair<uint32_t, uint32_t>, uint32_t> known;
+    for (uint32_t f = 0; f < mesh.faceCount(); ++f) known[{parts.facePart[f], mesh.faceMaterial[f]}] = 0;
+    for (auto& [key, patch] : known) {
+        patch = uint32_t(out.patches.size());
+        out.patches.push_back({key.first, key.second});
+    }
+    out.facePatch.resize(mesh.faces.size());
+    for (uint32_t f = 0; f < mesh.faceCount(); ++f)
+        out.facePatch[f] = known[{parts.facePart[f], mesh.faceMaterial[f]}];
+    return out;
+}
+
+Hierarchy convertToHierarchy(const Mesh& mesh, const XgcMesh& simplified, const PatchAssignment& assignment) {
+    Hierarchy h;
+    for (uint32_t s = 0; s < simplified.segmentCount(); ++s)
+        h.levelCount = std::max(h.levelCount, simplified.level(s) + 1);
+    h.positions = mesh.positions;
+    h.collapseLevel.assign(mesh.positions.size(), kNeverCollapses);
+    h.birthLevel.assign(mesh.positions.size(), 0);
+    h.domain.resize(mesh.positions.size());
+    h.wedgePosition = mesh.wedgePosition;
+    h.wedgeParent.assign(mesh.wedgePosition.size(), kNone);
+    h.attributes = mesh.attributes;
+    h.patches = assignment.patches;
+    h.facePatch = assignment.facePatch;
+    h.levelThreshold.assign(h.levelCount, 0);
+    assignDomains(mesh, h);
+    addMadeVertices(simplified, h);
+    for (const Genealogy& g : simplified.genealogies()) {
+        const uint32_t gone = g.type == CollapseType::interior ? 2 : 1;
+        for (uint32_t k = 0; k < gone; ++k) {
+            h.collapseLevel[g.ancestors[k]] = g.level;
+            h.wedgeParent[simplified.vertices()[g.ancestors[k]].wedge] = g.wedge;
+        }
+    }
+    return h;
+}
+
+Hierarchy buildThesisHierarchy(const Mesh& mesh, const Topology& topology, const Segmentation& parts,
+                               const ThesisHierarchyOptions& options, std::vector<HierarchyLevelReport>* report) {
+    assert(options.maxLevels < kNeverCollapses);
+    Stopwatch start;
+    const PatchAssignment assignment = patchesOfParts(mesh, parts);
+    XgcMesh simplified(mesh, topology, assignment.facePatch, uint32_t(assignment.patches.size()),
+                       {options.curvature, options.lockCurvature, options.lockDihedralCosine});
+    if (report) *report = {levelReport(simplified, {}, start.seconds())};
+    for (uint32_t level = 1; level <= options.maxLevels; ++level) {
+        Stopwatch watch;
+        const XgcPass pass = simplified.simplifyAll();
+        if (pass.collapses == 0) break;
+        if (report) report->push_back(levelReport(simplified, pass, watch.seconds()));
+    }
+    return convertToHierarchy(mesh, simplified, assignment);
+}
+
+} // namespace xgc::bake
