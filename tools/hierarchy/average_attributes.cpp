@@ -15,7 +15,8 @@ glm::vec3 averageDirection(glm::vec3 a, glm::vec3 b) {
     return length > 0 ? sum / length : a;
 }
 
-template <typename T> void appendMean(std::vector<T>& column, uint32_t a, uint32_t b) {
+template <typename T>
+void appendMean(std::vector<T>& column, uint32_t a, uint32_t b) {
     if (!column.empty()) column.push_back(column[a] * 0.5f + column[b] * 0.5f);
 }
 

@@ -90,8 +90,7 @@ PatchAssignment patchesOfParts(const Mesh& mesh, const Segmentation& parts) {
         out.patches.push_back({key.first, key.second});
     }
     out.facePatch.resize(mesh.faces.size());
-    for (uint32_t f = 0; f < mesh.faceCount(); ++f)
-        out.facePatch[f] = known[{parts.facePart[f], mesh.faceMaterial[f]}];
+    for (uint32_t f = 0; f < mesh.faceCount(); ++f) out.facePatch[f] = known[{parts.facePart[f], mesh.faceMaterial[f]}];
     return out;
 }
 

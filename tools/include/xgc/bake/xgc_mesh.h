@@ -34,11 +34,11 @@ enum class CollapseType : uint8_t {
 /// (wing). The bintree of the thesis: its one branch is the genealogy of ancestors[0], the other that of
 /// ancestors[1] (interior) or `older` (wing).
 struct Genealogy {
-    glm::vec3 hoppe{0};                          ///< v_i = v_k + hoppe; v_j = v_k - hoppe (interior), v_k (wing)
-    std::array<uint32_t, 2> ancestors{};         ///< v_i, v_j
-    uint32_t edge = kNone;                       ///< between them
-    uint32_t wedge = kNone;                      ///< of v_k, which the wedge of v_i becomes
-    uint32_t older = kNone;                      ///< wing: what v_j had taken in before
+    glm::vec3 hoppe{0};                  ///< v_i = v_k + hoppe; v_j = v_k - hoppe (interior), v_k (wing)
+    std::array<uint32_t, 2> ancestors{}; ///< v_i, v_j
+    uint32_t edge = kNone;               ///< between them
+    uint32_t wedge = kNone;              ///< of v_k, which the wedge of v_i becomes
+    uint32_t older = kNone;              ///< wing: what v_j had taken in before
     CollapseType type = CollapseType::interior;
     uint8_t level = 0; ///< level of the segment that it led to
 };
@@ -73,7 +73,7 @@ class XgcMesh {
 public:
     struct Vertex {
         glm::vec3 position{0};
-        uint32_t firstUse = kNone;  ///< of the ring of its incident edges; kNone for ghosts
+        uint32_t firstUse = kNone; ///< of the ring of its incident edges; kNone for ghosts
         uint32_t genealogy = kNone;
         uint32_t wedge = kNone; ///< its only one, or kNone
         uint8_t level = 0;      ///< of its segment when it was made
@@ -96,16 +96,16 @@ public:
         uint8_t level = 0;
     };
     struct Face {
-        std::array<uint32_t, 3> edges{}; ///< edge k runs from corner k to corner k + 1
+        std::array<uint32_t, 3> edges{};  ///< edge k runs from corner k to corner k + 1
         std::array<uint32_t, 3> wedges{}; ///< corners
-        glm::vec3 normal{0};     ///< unit, or zero where it has no area
-        glm::vec3 baseNormal{0}; ///< of level 0
+        glm::vec3 normal{0};              ///< unit, or zero where it has no area
+        glm::vec3 baseNormal{0};          ///< of level 0
         uint32_t segment = 0;
         bool ghost = false;
     };
     struct Segment {
-        std::vector<uint32_t> faces; ///< of level 0, rising
-        std::vector<uint32_t> edges; ///< that may collapse: both faces in it; rising
+        std::vector<uint32_t> faces;       ///< of level 0, rising
+        std::vector<uint32_t> edges;       ///< that may collapse: both faces in it; rising
         std::vector<uint32_t> collapses;   ///< genealogies in order
         std::vector<uint32_t> levelStarts; ///< in collapses, one a level above 0
         uint32_t faceCount = 0;            ///< at its level
@@ -161,7 +161,8 @@ private:
     uint32_t otherEnd(uint32_t use) const { return edges_[use / 2].ends[~use & 1]; }
     uint32_t& nextUse(uint32_t use) { return edges_[use / 2].next[use & 1]; }
     uint32_t& previousUse(uint32_t use) { return edges_[use / 2].previous[use & 1]; }
-    template <typename Visit> void forUses(uint32_t vertex, Visit visit) const {
+    template <typename Visit>
+    void forUses(uint32_t vertex, Visit visit) const {
         const uint32_t first = vertices_[vertex].firstUse;
         for (uint32_t use = first; use != kNone;) {
             visit(use);
