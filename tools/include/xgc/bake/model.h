@@ -51,6 +51,7 @@ struct SceneNode {
     std::string name;
     uint32_t parent = kNone; ///< before its children
     glm::mat4 toMesh{1};
+    uint32_t skin = kNone; ///< of the geometry that the node holds: its joints are rows of this skin
 };
 
 struct Skin {
