@@ -23,7 +23,9 @@ Status readSource(const Source& source, const ImportLimits& limits, Model& out) 
     if (source.bytes.empty()) return badInput(fmt::format("{}: the file is empty; export it again", source.name));
     try {
         Model model;
-        if (Status s = readWithAssimp(source, limits, model); !s.ok()) return s;
+        const bool gltf = source.extension == ".gltf" || source.extension == ".glb";
+        const Status s = gltf ? readGltf(source, limits, model) : readWithAssimp(source, limits, model);
+        if (!s.ok()) return s;
         if (model.triangles.empty())
             return badInput(fmt::format("{}: it holds no triangle; give a file with faces", source.name));
         out = std::move(model);

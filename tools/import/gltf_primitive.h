@@ -1,0 +1,23 @@
+#pragma once
+
+#include <import/gltf_nodes.h>
+#include <import/model_builder.h>
+#include <import/placement.h>
+
+namespace xgc::bake {
+
+/// Where and how the primitives of one node's mesh are added.
+struct GltfTarget {
+    Placement placement;
+    uint32_t node = kNone;
+    uint32_t jointCount = kNone; ///< of the node's skin, or kNone
+    uint32_t materialCount = 0;
+    std::string name; ///< of the primitive, for messages
+    std::vector<std::string> morphNames;
+};
+
+/// Adds a primitive's rows and triangles.
+Status readGltfPrimitive(const GltfAccessors& accessors, const tinygltf::Primitive& primitive, const GltfTarget& target,
+                         ModelBuilder& builder);
+
+} // namespace xgc::bake
