@@ -15,6 +15,7 @@ enum class StatusCode : uint32_t {
     badChecksum,   ///< a section or page was altered
     corrupt,       ///< an offset, count, order or index breaks a rule of FORMAT.md
     outOfCapacity, ///< a fixed capacity is exhausted; the message names the setting to raise
+    deviceRefused, ///< a graphics backend only: the device lacks something or failed; `element` is its own code
 };
 
 /// A code, a static English sentence that names the element and the remedy, and the index of the

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <xgc/vulkan/context.h>
+
+#include <cstddef>
+#include <memory>
+#include <span>
+
+namespace xgc::vulkan {
+
+struct OffscreenDesc {
+    VkExtent2D size{1280, 720};
+    VkFormat colorFormat = VK_FORMAT_R8G8B8A8_SRGB; ///< four bytes a pixel
+    VkFormat depthFormat = VK_FORMAT_D32_SFLOAT;
+    VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_4_BIT; ///< more than one: resolved
+    uint32_t framesInFlight = 2;
+};
+
+/// A target to draw pictures to where there is no window: attachments, a command buffer a frame in flight, and a
+/// read-back. A frame:
+///
+///     begin(cmd);                  // waits for the frame that used the slot before
+///     ... copies, compute ...
+///     beginRendering(cmd, clear);
+///     ... draws ...
+///     endRendering(cmd);
+///     submit(signals, frame);
+///     read(frame, pixels);         // at once, or up to framesInFlight - 1 frames later
+class Offscreen {
+public:
+    Offscreen();
+    ~Offscreen(); ///< waits for its frames
+    Offscreen(Offscreen&&) noexcept;
+    Offscreen& operator=(Offscreen&&) noexcept;
+
+    /// `context` and the queue outlive it.
+    Status create(const Context& context, VkQueue queue, const OffscreenDesc& desc);
+
+    Status begin(VkCommandBuffer& cmd);
+    /// Clears colour to `clear` (linear RGBA) and depth to 0: depth is reversed, 0 is infinitely far. Sets viewport and
+    /// scissor.
+    void beginRendering(VkCommandBuffer cmd, std::span<const float, 4> clear);
+    void endRendering(VkCommandBuffer cmd);
+    /// Submits and signals `signals` too, such as Renderer::frameDone. `frame` names the frame for `read`.
+    Status submit(std::span<const VkSemaphoreSubmitInfo> signals, uint64_t& frame);
+    /// Waits for one frame and copies its pixels out: size.width * size.height * 4 bytes, rows from the top.
+    Status read(uint64_t frame, std::span<std::byte> pixels);
+
+    const OffscreenDesc& desc() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace xgc::vulkan

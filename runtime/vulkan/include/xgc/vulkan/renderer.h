@@ -1,0 +1,130 @@
+#pragma once
+
+#include <xgc/draw_list.h>
+#include <xgc/select.h>
+#include <xgc/vulkan/camera.h>
+#include <xgc/vulkan/context.h>
+
+#include <memory>
+
+namespace xgc::vulkan {
+
+/// Names an asset whose streams lie in the vertex arena. Stale once removed: calls with it are refused.
+struct AssetHandle {
+    uint32_t index = 0;
+    uint32_t generation = 0; ///< 0 names nothing
+};
+
+struct InstanceHandle {
+    uint32_t index = 0; ///< DrawPatch::instance
+    uint32_t generation = 0;
+};
+
+/// Fixed capacities: all memory is taken by `create`.
+struct RendererConfig {
+    uint32_t assetCapacity = 64;
+    uint32_t instanceCapacity = 256;
+    uint32_t patchCapacity = 16384;               ///< sum of the patches of all instances
+    uint32_t materialCapacity = 256;              ///< sum of the materials of all assets
+    uint32_t slotCapacity = 65536;                ///< largest xgc::scratchCapacity of the assets
+    uint32_t domainCapacity = 65536;              ///< largest domain count of the assets
+    uint32_t viewCapacity = 4;                    ///< calls of recordDraws a frame
+    uint32_t indexCapacity = 1u << 24;            ///< of the index arena, in indices
+    VkDeviceSize vertexArenaBytes = 256ull << 20; ///< vertex streams of all assets
+    VkDeviceSize stagingBytes = 32ull << 20;      ///< a frame in flight: new indices and streams; at least 64 KiB
+    uint32_t framesInFlight = 2;
+    uint64_t waitNanoseconds = 10'000'000'000; ///< after which a frame that does not finish is an error
+
+    // The host's attachments.
+    VkFormat colorFormat = VK_FORMAT_R8G8B8A8_SRGB;
+    VkFormat depthFormat = VK_FORMAT_D32_SFLOAT;
+    VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_4_BIT;
+    VkCompareOp depthCompare = VK_COMPARE_OP_GREATER; ///< Camera's depth is reversed
+};
+
+/// Capacities that hold `instances` of each of the assets with every patch at its finest: RendererConfig's arenas,
+/// staging and counts, grown from `base`. For programs that know their assets; engines set budgets.
+RendererConfig configFor(std::span<const AssetView* const> assets, uint32_t instances, const RendererConfig& base = {});
+
+enum class ShadingMode : uint32_t { shaded, parts, levels, wire };
+
+struct ViewDesc {
+    Camera camera;
+    glm::vec3 sky{0, 1, 0}; ///< unit, up in the world: where the ambient light comes from
+    ShadingMode mode = ShadingMode::shaded;
+};
+
+/// What a host's own passes need, with shaders and pipelines of their own (shared.h has the records): valid from
+/// endFrame to the next beginFrame.
+struct FrameGeometry {
+    VkBuffer indices = VK_NULL_HANDLE; ///< u32, vertex rows of the asset
+    VkDeviceAddress indicesAddress = 0;
+    VkBuffer commands = VK_NULL_HANDLE; ///< a DrawCommand each draw
+    VkDeviceSize commandsOffset = 0;
+    VkDeviceAddress instances = 0; ///< InstanceRecord, by DrawPatch::instance
+    VkDeviceAddress draws = 0;     ///< DrawRecord, by number of the draw
+    VkDeviceAddress materials = 0; ///< MaterialRecord
+    std::span<const DrawBatch> batches;
+};
+
+/// Draws instances of assets at any mix of levels with the host's device, queue and attachments. A frame:
+///
+///     renderer.beginFrame();                        // waits for the frame framesInFlight ago, for nothing else
+///     for each instance: select(...), renderer.setLevels(instance, levels);
+///     renderer.endFrame();
+///     renderer.recordTransfers(cmd);                // outside rendering, before any draw
+///     vkCmdBeginRendering(cmd, ...), viewport, scissor
+///     renderer.recordDraws(cmd, view);
+///     vkCmdEndRendering(cmd)
+///     vkQueueSubmit2(queue, ... signal renderer.frameDone() ...);
+///
+/// Every frame that was begun must be recorded and submitted, in order, on one queue. Frames allocate nothing.
+/// One thread at a time. Positions are float3 at any scale; draws are opaque.
+class Renderer {
+public:
+    Renderer();
+    ~Renderer(); ///< the host has waited for its frames
+    Renderer(Renderer&&) noexcept;
+    Renderer& operator=(Renderer&&) noexcept;
+
+    /// Takes all memory and makes the pipelines. `context` outlives the renderer.
+    Status create(const Context& context, const RendererConfig& config);
+
+    /// Starts sending the asset's streams, some each frame. The view and its bytes outlive the asset here.
+    Status addAsset(const AssetView& asset, AssetHandle& handle);
+    /// True once a frame up to the current one has everything of the asset: its instances can be drawn.
+    bool resident(AssetHandle asset) const;
+    /// Its instances must be gone. Its memory is reused when no frame in flight reads it.
+    Status removeAsset(AssetHandle asset);
+
+    /// Drawn from the first frame in which setLevels succeeds for it.
+    Status addInstance(AssetHandle asset, const Placement& placement, InstanceHandle& handle);
+    Status setPlacement(InstanceHandle instance, const Placement& placement);
+    Status removeInstance(InstanceHandle instance);
+
+    Status beginFrame();
+    /// As DrawList::setLevels; also deferred, with outOfCapacity, while the asset is not resident.
+    Status setLevels(InstanceHandle instance, Levels levels);
+    /// Levels that the instance is drawn at; empty before its first success.
+    Levels levels(InstanceHandle instance) const;
+    Status endFrame();
+
+    void recordTransfers(VkCommandBuffer cmd) const;
+    /// A light grey gradient over the whole target; no depth. Optional.
+    void recordBackground(VkCommandBuffer cmd) const;
+    /// One vkCmdDrawIndexedIndirect a material. Viewport and scissor are the host's.
+    Status recordDraws(VkCommandBuffer cmd, const ViewDesc& view);
+    /// To be signalled by the host's submission of the frame.
+    VkSemaphoreSubmitInfo frameDone() const;
+
+    FrameGeometry geometry() const;
+    /// Of the latest endFrame; uploadBytes counts indices and vertex streams.
+    const FrameStats& stats() const;
+    const DrawList& drawList() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace xgc::vulkan

@@ -1,0 +1,160 @@
+#include "asset_store.h"
+
+#include "part_colors.h"
+
+#include <utility>
+
+namespace xgc::vulkan {
+namespace {
+
+/// Units of kAlignment that a stream takes.
+uint64_t unitsOf(const VertexStream& stream) {
+    return (stream.bytes.size() + AssetStore::kAlignment - 1) / AssetStore::kAlignment;
+}
+
+std::span<const VertexStream> streamsOf(const AssetView& view) {
+    return {view.vertexStreams.data(), view.vertexStreamCount};
+}
+
+/// What shaders read: anything else is stored for the host's own passes, or refused.
+Status checkStreams(const AssetView& view) {
+    bool hasPositions = false;
+    for (const VertexStream& s : streamsOf(view)) {
+        if (s.kind != format::StreamKind::position) continue;
+        hasPositions = s.format == format::StreamFormat::f32x3 && s.stride == 12;
+    }
+    if (hasPositions) return {};
+    return {StatusCode::unsupported, "the backend draws float3 positions without gaps: bake them so", 0};
+}
+
+bool drawableColor(const VertexStream& s) {
+    return (s.format == format::StreamFormat::unorm8x4 && s.stride == 4) ||
+           (s.format == format::StreamFormat::f32x4 && s.stride == 16);
+}
+
+void noteAddress(StoredAsset& asset, const VertexStream& stream, VkDeviceAddress address) {
+    if (stream.set != 0) return;
+    switch (stream.kind) {
+    case format::StreamKind::position:
+        asset.positions = address;
+        break;
+    case format::StreamKind::normal:
+        if (stream.format == format::StreamFormat::snorm16x2 && stream.stride == 4) asset.normals = address;
+        break;
+    case format::StreamKind::color:
+        if (drawableColor(stream)) asset.colors = address;
+        asset.colorFormat = stream.format;
+        break;
+    default:
+        break;
+    }
+}
+
+} // namespace
+
+Status AssetStore::create(const Context& context, const RendererConfig& config) {
+    const VkDeviceSize units = std::max<VkDeviceSize>(config.vertexArenaBytes / kAlignment, 1);
+    Status status = arena_.create(context, units * kAlignment,
+                                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                                      VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT,
+                                  Residence::device);
+    if (!status.ok()) return status;
+    status = materials_.create(context, config.materialCapacity * sizeof(shader::MaterialRecord),
+                               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT,
+                               Residence::upload);
+    if (!status.ok()) return status;
+    arenaRanges_.create(units);
+    materialRanges_.create(config.materialCapacity);
+    uploads_.create(config.assetCapacity);
+    assets_.resize(config.assetCapacity);
+    return {};
+}
+
+Status AssetStore::place(const AssetView& view, StoredAsset& asset) {
+    uint64_t units = 0;
+    for (const VertexStream& stream : streamsOf(view)) units += unitsOf(stream);
+    if (!arenaRanges_.allocate(units, asset.bytes)) {
+        return {StatusCode::outOfCapacity, "the vertex arena is full: raise RendererConfig::vertexArenaBytes",
+                units * kAlignment};
+    }
+    if (!materialRanges_.allocate(view.materials.size(), asset.materials)) {
+        arenaRanges_.free(asset.bytes);
+        return {StatusCode::outOfCapacity, "too many materials: raise RendererConfig::materialCapacity",
+                view.materials.size()};
+    }
+    return {};
+}
+
+void AssetStore::queueStreams(StoredAsset& asset, uint32_t index) {
+    VkDeviceSize offset = asset.bytes.first * kAlignment;
+    for (const VertexStream& stream : streamsOf(asset.view)) {
+        uploads_.add({index, stream.bytes, offset});
+        noteAddress(asset, stream, arena_.address() + offset);
+        offset += unitsOf(stream) * kAlignment;
+    }
+}
+
+void AssetStore::writeMaterials(const StoredAsset& asset) {
+    auto* out = reinterpret_cast<shader::MaterialRecord*>(materials_.mapped().data()) + asset.materials.first;
+    for (const format::MaterialRecord& m : asset.view.materials) {
+        shader::MaterialRecord record{};
+        record.baseColor = {m.baseColor[0], m.baseColor[1], m.baseColor[2], m.baseColor[3]};
+        record.emissive = {m.emissive[0], m.emissive[1], m.emissive[2], 0};
+        record.metallic = m.metallic;
+        record.roughness = m.roughness;
+        record.flags = m.flags;
+        *out++ = record;
+    }
+}
+
+Status AssetStore::add(const AssetView& view, AssetHandle& handle) {
+    const Status usable = checkStreams(view);
+    if (!usable.ok()) return usable;
+    const auto slot = std::find_if(assets_.begin(), assets_.end(), [](const StoredAsset& a) { return !a.alive(); });
+    if (slot == assets_.end()) {
+        return {StatusCode::outOfCapacity, "too many assets: raise RendererConfig::assetCapacity", assets_.size() + 1};
+    }
+    StoredAsset asset;
+    asset.view = view;
+    asset.generation = slot->generation + 1;
+    const Status status = place(view, asset);
+    if (!status.ok()) return status;
+    const auto index = uint32_t(slot - assets_.begin());
+    queueStreams(asset, index);
+    writeMaterials(asset);
+    asset.partColors = colorParts(view, shader::kPartColorCount);
+    *slot = std::move(asset);
+    handle = {index, slot->generation};
+    return {};
+}
+
+Status AssetStore::remove(AssetHandle handle, uint64_t frame) {
+    StoredAsset* asset = find(handle);
+    if (!asset) return {StatusCode::badArgument, "removeAsset: no such asset", handle.index};
+    if (asset->instanceCount > 0) {
+        return {StatusCode::badArgument, "removeAsset: remove its instances first", asset->instanceCount};
+    }
+    uploads_.cancel(handle.index);
+    retired_.push_back({frame, asset->bytes, asset->materials});
+    const uint32_t generation = asset->generation + 1;
+    *asset = {};
+    asset->generation = generation;
+    return {};
+}
+
+void AssetStore::reclaim(uint64_t frame, uint32_t framesInFlight) {
+    auto at = retired_.begin();
+    for (; at != retired_.end() && at->frame + framesInFlight <= frame; ++at) {
+        arenaRanges_.free(at->bytes);
+        materialRanges_.free(at->materials);
+    }
+    retired_.erase(retired_.begin(), at);
+}
+
+const StoredAsset* AssetStore::find(AssetHandle handle) const {
+    if (handle.index >= assets_.size()) return nullptr;
+    const StoredAsset& asset = assets_[handle.index];
+    return asset.alive() && asset.generation == handle.generation ? &asset : nullptr;
+}
+
+} // namespace xgc::vulkan

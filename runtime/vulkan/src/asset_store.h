@@ -1,0 +1,73 @@
+#pragma once
+
+#include "buffer.h"
+#include "range_list.h"
+#include "shared.h"
+#include "uploader.h"
+
+#include <xgc/vulkan/renderer.h>
+
+#include <utility>
+#include <vector>
+
+namespace xgc::vulkan {
+
+/// An asset on the device.
+struct StoredAsset {
+    AssetView view;
+    uint32_t generation = 0; ///< odd while it is there
+    uint32_t instanceCount = 0;
+    RangeList::Range bytes;     ///< in the vertex arena, units of AssetStore::kAlignment
+    RangeList::Range materials; ///< in the renderer's list
+    std::vector<uint8_t> partColors;
+    VkDeviceAddress positions = 0, normals = 0, colors = 0;
+    format::StreamFormat colorFormat{};
+
+    bool alive() const { return generation % 2 == 1; }
+};
+
+/// The vertex arena, the material list, and which asset lies where. Shaders reach streams by address, so the arena may
+/// be larger than the largest storage buffer range.
+class AssetStore {
+public:
+    static constexpr VkDeviceSize kAlignment = 64;
+
+    Status create(const Context& context, const RendererConfig& config);
+
+    Status add(const AssetView& view, AssetHandle& handle);
+    /// Memory returns to the arena framesInFlight frames after `frame`.
+    Status remove(AssetHandle handle, uint64_t frame);
+    /// Gives back what no frame in flight reads.
+    void reclaim(uint64_t frame, uint32_t framesInFlight);
+
+    /// Null for a stale handle.
+    const StoredAsset* find(AssetHandle handle) const;
+    StoredAsset* find(AssetHandle handle) { return const_cast<StoredAsset*>(std::as_const(*this).find(handle)); }
+    const StoredAsset& at(uint32_t index) const { return assets_[index]; }
+    StoredAsset& at(uint32_t index) { return assets_[index]; }
+
+    Uploader& uploads() { return uploads_; }
+    const Uploader& uploads() const { return uploads_; }
+    const Buffer& arena() const { return arena_; }
+    const Buffer& materials() const { return materials_; }
+
+private:
+    struct Retired {
+        uint64_t frame;
+        RangeList::Range bytes, materials;
+    };
+
+    Status place(const AssetView& view, StoredAsset& asset);
+    void queueStreams(StoredAsset& asset, uint32_t index);
+    void writeMaterials(const StoredAsset& asset);
+
+    Buffer arena_;
+    RangeList arenaRanges_;
+    Buffer materials_; ///< written by the host where no frame reads
+    RangeList materialRanges_;
+    Uploader uploads_;
+    std::vector<StoredAsset> assets_;
+    std::vector<Retired> retired_; ///< oldest first
+};
+
+} // namespace xgc::vulkan

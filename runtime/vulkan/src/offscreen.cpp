@@ -1,0 +1,246 @@
+#include "attachment.h"
+#include "barriers.h"
+#include "buffer.h"
+#include "timeline.h"
+
+#include <xgc/vulkan/offscreen.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace xgc::vulkan {
+namespace {
+
+constexpr uint64_t kWaitNanoseconds = 60'000'000'000;
+constexpr size_t kMaxSignals = 8;
+constexpr Access kColorWrite{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT};
+constexpr Access kDepthWrite{VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+                             VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT |
+                                 VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT};
+constexpr Access kCopyRead{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT};
+constexpr Access kCopyWrite{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
+constexpr Access kHostRead{VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT};
+
+} // namespace
+
+struct Offscreen::Impl {
+    struct Slot {
+        VkCommandPool pool = VK_NULL_HANDLE;
+        VkCommandBuffer cmd = VK_NULL_HANDLE;
+        Buffer pixels;
+    };
+
+    const Context* context = nullptr;
+    VkQueue queue = VK_NULL_HANDLE;
+    OffscreenDesc desc;
+    Attachment samples; ///< where there is more than one sample a pixel
+    Attachment color;   ///< what is read back
+    Attachment depth;
+    std::vector<Slot> slots;
+    Timeline timeline;
+    uint64_t frame = 0;     ///< the one being recorded, or the latest
+    uint64_t submitted = 0; ///< the latest
+
+    ~Impl();
+    Status createAttachments();
+    Status createSlot(Slot& slot);
+    Slot& slotOf(uint64_t f) { return slots[f % slots.size()]; }
+    bool multisampled() const { return desc.samples != VK_SAMPLE_COUNT_1_BIT; }
+};
+
+Offscreen::Impl::~Impl() {
+    if (!context) return;
+    // A failure here means that the device is lost: then nothing is in use either.
+    if (submitted > 0) static_cast<void>(timeline.wait(submitted, kWaitNanoseconds));
+    for (Slot& slot : slots) {
+        if (slot.pool) context->vk().vkDestroyCommandPool(context->device(), slot.pool, context->allocation());
+    }
+}
+
+Status Offscreen::Impl::createAttachments() {
+    const VkImageUsageFlags drawn = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+    Status status = color.create(*context, desc.size, desc.colorFormat, VK_SAMPLE_COUNT_1_BIT,
+                                 drawn | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
+    if (status.ok() && multisampled()) {
+        status = samples.create(*context, desc.size, desc.colorFormat, desc.samples, drawn, VK_IMAGE_ASPECT_COLOR_BIT);
+    }
+    if (status.ok()) {
+        status = depth.create(*context, desc.size, desc.depthFormat, desc.samples,
+                              VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, VK_IMAGE_ASPECT_DEPTH_BIT);
+    }
+    return status;
+}
+
+Status Offscreen::Impl::createSlot(Slot& slot) {
+    const Functions& vk = context->vk();
+    VkCommandPoolCreateInfo poolInfo{};
+    poolInfo.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+    poolInfo.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
+    poolInfo.queueFamilyIndex = context->queueFamily();
+    VkResult result = vk.vkCreateCommandPool(context->device(), &poolInfo, context->allocation(), &slot.pool);
+    if (result != VK_SUCCESS) return refused("vkCreateCommandPool failed", result);
+    VkCommandBufferAllocateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+    info.commandPool = slot.pool;
+    info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+    info.commandBufferCount = 1;
+    result = vk.vkAllocateCommandBuffers(context->device(), &info, &slot.cmd);
+    if (result != VK_SUCCESS) return refused("vkAllocateCommandBuffers failed", result);
+    return slot.pixels.create(*context, VkDeviceSize(desc.size.width) * desc.size.height * 4,
+                              VK_BUFFER_USAGE_TRANSFER_DST_BIT, Residence::download);
+}
+
+Offscreen::Offscreen() = default;
+Offscreen::~Offscreen() = default;
+Offscreen::Offscreen(Offscreen&&) noexcept = default;
+Offscreen& Offscreen::operator=(Offscreen&&) noexcept = default;
+
+Status Offscreen::create(const Context& context, VkQueue queue, const OffscreenDesc& desc) {
+    if (desc.size.width == 0 || desc.size.height == 0 || desc.framesInFlight == 0) {
+        return {StatusCode::badArgument, "OffscreenDesc: the size and framesInFlight must not be zero", 0};
+    }
+    auto impl = std::make_unique<Impl>();
+    impl->context = &context;
+    impl->queue = queue;
+    impl->desc = desc;
+    Status status = impl->createAttachments();
+    if (status.ok()) status = impl->timeline.create(context);
+    impl->slots.resize(desc.framesInFlight);
+    for (Impl::Slot& slot : impl->slots) {
+        if (status.ok()) status = impl->createSlot(slot);
+    }
+    if (status.ok()) impl_ = std::move(impl);
+    return status;
+}
+
+Status Offscreen::begin(VkCommandBuffer& cmd) {
+    Impl& self = *impl_;
+    const Functions& vk = self.context->vk();
+    const uint64_t next = self.frame + 1;
+    if (next > self.slots.size()) {
+        const Status status = self.timeline.wait(next - self.slots.size(), kWaitNanoseconds);
+        if (!status.ok()) return status;
+    }
+    const Impl::Slot& slot = self.slotOf(next);
+    VkResult result = vk.vkResetCommandPool(self.context->device(), slot.pool, 0);
+    if (result == VK_SUCCESS) {
+        VkCommandBufferBeginInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+        info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+        result = vk.vkBeginCommandBuffer(slot.cmd, &info);
+    }
+    if (result != VK_SUCCESS) return refused("a command buffer could not be begun", result);
+    self.frame = next;
+    cmd = slot.cmd;
+    return {};
+}
+
+void Offscreen::beginRendering(VkCommandBuffer cmd, std::span<const float, 4> clear) {
+    Impl& self = *impl_;
+    const Functions& vk = self.context->vk();
+    const auto discard = [&](const Attachment& target, VkImageAspectFlags aspect, VkImageLayout layout, Access before,
+                             Access after) {
+        imageBarrier(vk, cmd, {target.image(), aspect, VK_IMAGE_LAYOUT_UNDEFINED, layout}, before, after);
+    };
+    const VkImageLayout colorLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    const VkImageLayout depthLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+    // The frame before may still be drawing to the attachments, or copying from them.
+    discard(self.color, VK_IMAGE_ASPECT_COLOR_BIT, colorLayout,
+            {kColorWrite.stages | kCopyRead.stages, kColorWrite.access}, kColorWrite);
+    if (self.multisampled()) {
+        discard(self.samples, VK_IMAGE_ASPECT_COLOR_BIT, colorLayout, kColorWrite,
+                {kColorWrite.stages, kColorWrite.access | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT});
+    }
+    discard(self.depth, VK_IMAGE_ASPECT_DEPTH_BIT, depthLayout, kDepthWrite, kDepthWrite);
+
+    VkRenderingAttachmentInfo color{};
+    color.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+    color.imageView = self.multisampled() ? self.samples.view() : self.color.view();
+    color.imageLayout = colorLayout;
+    color.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+    color.storeOp = self.multisampled() ? VK_ATTACHMENT_STORE_OP_DONT_CARE : VK_ATTACHMENT_STORE_OP_STORE;
+    std::copy(clear.begin(), clear.end(), color.clearValue.color.float32);
+    if (self.multisampled()) {
+        color.resolveMode = VK_RESOLVE_MODE_AVERAGE_BIT;
+        color.resolveImageView = self.color.view();
+        color.resolveImageLayout = colorLayout;
+    }
+    VkRenderingAttachmentInfo depth{};
+    depth.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+    depth.imageView = self.depth.view();
+    depth.imageLayout = depthLayout;
+    depth.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+    depth.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    VkRenderingInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
+    info.renderArea = {{0, 0}, self.desc.size};
+    info.layerCount = 1;
+    info.colorAttachmentCount = 1;
+    info.pColorAttachments = &color;
+    info.pDepthAttachment = &depth;
+    vk.vkCmdBeginRendering(cmd, &info);
+    const VkViewport viewport{0, 0, float(self.desc.size.width), float(self.desc.size.height), 0, 1};
+    vk.vkCmdSetViewport(cmd, 0, 1, &viewport);
+    vk.vkCmdSetScissor(cmd, 0, 1, &info.renderArea);
+}
+
+void Offscreen::endRendering(VkCommandBuffer cmd) {
+    Impl& self = *impl_;
+    const Functions& vk = self.context->vk();
+    vk.vkCmdEndRendering(cmd);
+    imageBarrier(vk, cmd,
+                 {self.color.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL},
+                 kColorWrite, kCopyRead);
+    VkBufferImageCopy region{};
+    region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    region.imageExtent = {self.desc.size.width, self.desc.size.height, 1};
+    vk.vkCmdCopyImageToBuffer(cmd, self.color.image(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                              self.slotOf(self.frame).pixels.handle(), 1, &region);
+    memoryBarrier(vk, cmd, kCopyWrite, kHostRead);
+}
+
+Status Offscreen::submit(std::span<const VkSemaphoreSubmitInfo> signals, uint64_t& frame) {
+    Impl& self = *impl_;
+    const Functions& vk = self.context->vk();
+    if (signals.size() > kMaxSignals) return {StatusCode::badArgument, "Offscreen::submit: at most 8 signals", 0};
+    const VkCommandBuffer cmd = self.slotOf(self.frame).cmd;
+    VkResult result = vk.vkEndCommandBuffer(cmd);
+    if (result != VK_SUCCESS) return refused("vkEndCommandBuffer failed", result);
+    std::array<VkSemaphoreSubmitInfo, kMaxSignals + 1> all;
+    std::copy(signals.begin(), signals.end(), all.begin());
+    all[signals.size()] = self.timeline.signal(self.frame);
+    VkCommandBufferSubmitInfo commands{};
+    commands.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO;
+    commands.commandBuffer = cmd;
+    VkSubmitInfo2 info{};
+    info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
+    info.commandBufferInfoCount = 1;
+    info.pCommandBufferInfos = &commands;
+    info.signalSemaphoreInfoCount = uint32_t(signals.size() + 1);
+    info.pSignalSemaphoreInfos = all.data();
+    result = vk.vkQueueSubmit2(self.queue, 1, &info, VK_NULL_HANDLE);
+    if (result != VK_SUCCESS) return refused("vkQueueSubmit2 failed", result);
+    self.submitted = self.frame;
+    frame = self.frame;
+    return {};
+}
+
+Status Offscreen::read(uint64_t frame, std::span<std::byte> pixels) {
+    Impl& self = *impl_;
+    if (frame == 0 || frame > self.submitted || frame + self.slots.size() <= self.frame) {
+        return {StatusCode::badArgument, "Offscreen::read: the frame is not in flight any more, or not yet", frame};
+    }
+    const std::span<const std::byte> mapped = self.slotOf(frame).pixels.mapped();
+    if (pixels.size() < mapped.size()) return {StatusCode::badArgument, "Offscreen::read: too few bytes", frame};
+    const Status status = self.timeline.wait(frame, kWaitNanoseconds);
+    if (status.ok()) std::copy(mapped.begin(), mapped.end(), pixels.begin());
+    return status;
+}
+
+const OffscreenDesc& Offscreen::desc() const {
+    return impl_->desc;
+}
+
+} // namespace xgc::vulkan

@@ -1,0 +1,85 @@
+// A neutral studio: light from the sky, and a key, a fill and a rim light that hang on the camera, so that a shape reads
+// the same from every side.
+layout(location = 0) in vec3 inPosition;
+layout(location = 1) in vec3 inNormal;
+layout(location = 2) in vec4 inColor;
+layout(location = 3) flat in uint inDraw;
+
+const vec3 kSky = vec3(0.40, 0.44, 0.50);
+const vec3 kGround = vec3(0.20, 0.175, 0.155);
+const vec3 kKey = vec3(0.78, 0.74, 0.68);
+const vec3 kFill = vec3(0.13, 0.16, 0.20);
+const vec3 kRim = vec3(0.16, 0.18, 0.21);
+
+// The normal on the side that is seen. The face's own plane decides which side that is, so two-sided surfaces, mirrored
+// instances and inconsistent winding are all lit rightly.
+vec3 seenNormal(vec3 toEye) {
+    vec3 plane = cross(dFdx(inPosition), dFdy(inPosition));
+    const float length2 = dot(plane, plane);
+    plane = length2 > 0.0 ? plane * inversesqrt(length2) : toEye;
+    if (dot(plane, toEye) < 0.0) plane = -plane;
+    if (dot(inNormal, inNormal) == 0.0) return plane;
+    const vec3 n = normalize(inNormal);
+    return dot(n, plane) < 0.0 ? -n : n;
+}
+
+struct Surface {
+    vec3 albedo;
+    vec3 emissive;
+    float metallic;
+    float roughness;
+};
+
+vec3 light(Surface s, ViewRecord view) {
+    const vec3 toEye = normalize(view.eye.xyz - inPosition);
+    const vec3 n = seenNormal(toEye);
+    const vec3 key = normalize(-0.55 * view.right.xyz + 0.75 * view.up.xyz - 0.70 * view.forward.xyz);
+    const vec3 fill = normalize(0.85 * view.right.xyz - 0.10 * view.up.xyz - 0.50 * view.forward.xyz);
+    const vec3 rim = normalize(0.35 * view.right.xyz + 0.55 * view.up.xyz + 0.75 * view.forward.xyz);
+
+    const vec3 ambient = mix(kGround, kSky, 0.5 + 0.5 * dot(n, view.sky.xyz));
+    // Wrapped a little: no hard terminator.
+    const float keyDiffuse = max((dot(n, key) + 0.12) / 1.12, 0.0);
+    const vec3 diffuse =
+        ambient + kKey * keyDiffuse + kFill * max(dot(n, fill), 0.0) + kRim * max(dot(n, rim), 0.0);
+
+    const vec3 halfway = normalize(key + toEye);
+    const float gloss = exp2(10.0 * (1.0 - s.roughness) + 2.0);
+    const float sheen = pow(max(dot(n, halfway), 0.0), gloss) * (gloss + 8.0) / 64.0 * keyDiffuse;
+    const vec3 f0 = mix(vec3(0.04), s.albedo, s.metallic);
+    const float edge = pow(1.0 - max(dot(n, toEye), 0.0), 5.0);
+    const vec3 mirror = (f0 + (1.0 - f0) * edge * (1.0 - s.roughness)) * ambient;
+    return s.albedo * (1.0 - 0.7 * s.metallic) * diffuse + f0 * kKey * sheen + 0.5 * mirror * (1.0 - 0.8 * s.roughness) +
+           s.emissive;
+}
+
+vec3 fromSrgb(uint hex) {
+    const vec3 c = vec3((hex >> 16) & 255u, (hex >> 8) & 255u, hex & 255u) / 255.0;
+    return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
+}
+
+// Twelve hues of about one lightness, neighbours in the list far apart on the wheel.
+vec3 partColor(uint i) {
+    const uint colors[kPartColorCount] =
+        uint[](0xE6A15Au, 0x5B8FCBu, 0x8DBF67u, 0xC9705Fu, 0x9A7FC4u, 0x4FB3A9u, 0xE3C75Fu, 0xD487AFu, 0x7FA6A0u,
+               0xB08A68u, 0x6FB5DCu, 0xB7C48Au);
+    return fromSrgb(colors[i % kPartColorCount]);
+}
+
+// Fine is deep blue, coarse is pale yellow; lightness rises evenly, so the order shows in grey too.
+vec3 levelColor(float t) {
+    const uint stops[9] = uint[](0x3B3A8Cu, 0x3A5BA8u, 0x357FAFu, 0x2F9FA6u, 0x45B78Fu, 0x7DC96Eu, 0xB6D456u, 0xE8D94Eu,
+                                 0xFFEFA0u);
+    const float x = clamp(t, 0.0, 1.0) * 8.0;
+    const uint i = min(uint(x), 7u);
+    return mix(fromSrgb(stops[i]), fromSrgb(stops[i + 1]), x - float(i));
+}
+
+Surface surfaceOf(DrawRecord draw, uint mode) {
+    if (mode == kModeParts) return Surface(partColor(draw.partColor), vec3(0), 0.0, 0.7);
+    if (mode == kModeLevels) return Surface(levelColor(draw.levelFraction), vec3(0), 0.0, 0.8);
+    if (mode == kModeWire) return Surface(vec3(0.62), vec3(0), 0.0, 0.9);
+    const MaterialRecord m = Materials(push.materials).at[draw.material];
+    // White is what most models without a material have: short of full reflection it keeps its shading.
+    return Surface(0.86 * m.baseColor.rgb * inColor.rgb, m.emissive.rgb, m.metallic, m.roughness);
+}

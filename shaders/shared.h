@@ -1,0 +1,92 @@
+// Structs and constants that C++ and GLSL both see. Layout: std430 with 16-byte vectors only, so that both sides agree
+// without padding rules; addresses are 64 bits, a pair of words in GLSL.
+#ifndef XGC_SHADERS_SHARED_H
+#define XGC_SHADERS_SHARED_H
+
+#ifdef __cplusplus
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+
+#include <cstdint>
+
+namespace xgc::shader {
+
+using uint = uint32_t;
+using vec4 = glm::vec4;
+using mat4 = glm::mat4;
+using Address = uint64_t;
+#define XGC_CONST inline constexpr
+#else
+#define Address uvec2
+#define XGC_CONST const
+#endif
+
+XGC_CONST uint kModeShaded = 0;
+XGC_CONST uint kModeParts = 1;
+XGC_CONST uint kModeLevels = 2;
+XGC_CONST uint kModeWire = 3;
+
+XGC_CONST uint kPartColorCount = 12;
+
+/// A view: a camera and how to colour what it sees.
+struct ViewRecord {
+    mat4 worldToClip;
+    vec4 eye;   ///< xyz
+    vec4 right; ///< the camera's unit vectors, which the lights hang on
+    vec4 up;
+    vec4 forward;
+    vec4 sky; ///< up in the world, for the ambient light
+    uint mode;
+    uint reserved0, reserved1, reserved2;
+};
+
+/// An instance: where it stands and where its vertex streams lie. Address 0: the asset has none.
+struct InstanceRecord {
+    vec4 toWorld[3]; ///< rows
+    Address positions; ///< float3 each row
+    Address normals;   ///< octahedral snorm16x2
+    Address colors;    ///< linear RGBA
+    uint colorFormat;  ///< xgc::format::StreamFormat
+    uint reserved;
+};
+
+/// A draw: what a patch looks like beside its triangles.
+struct DrawRecord {
+    uint instance;
+    uint material;
+    uint partColor; ///< below kPartColorCount, unlike those of adjacent parts
+    float levelFraction; ///< level / the asset's coarsest
+};
+
+struct MaterialRecord {
+    vec4 baseColor; ///< linear
+    vec4 emissive;  ///< linear, xyz
+    float metallic;
+    float roughness;
+    uint flags;
+    uint reserved;
+};
+
+/// Everything is found from here: no descriptors.
+struct PushConstants {
+    Address view;
+    Address instances;
+    Address draws;
+    Address materials;
+    Address indices;
+    uint firstDraw; ///< of the batch: gl_DrawID counts from it
+    uint reserved;
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(ViewRecord) == 160);
+static_assert(sizeof(InstanceRecord) == 80);
+static_assert(sizeof(DrawRecord) == 16);
+static_assert(sizeof(MaterialRecord) == 48);
+static_assert(sizeof(PushConstants) == 48);
+} // namespace xgc::shader
+#endif
+
+#undef XGC_CONST
+
+#endif

@@ -1,0 +1,13 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "geometry.glsl"
+#include "lighting.glsl"
+
+layout(location = 0) out vec4 outTarget;
+
+void main() {
+    const ViewRecord view = Views(push.view).at;
+    const DrawRecord draw = Draws(push.draws).at[inDraw];
+    outTarget = vec4(light(surfaceOf(draw, view.mode), view), 1);
+}
