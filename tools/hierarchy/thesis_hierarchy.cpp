@@ -126,7 +126,7 @@ Hierarchy buildThesisHierarchy(const Mesh& mesh, const Topology& topology, const
     Stopwatch start;
     const PatchAssignment assignment = patchesOfParts(mesh, parts);
     XgcMesh simplified(mesh, topology, assignment.facePatch, uint32_t(assignment.patches.size()),
-                       {options.curvature, options.lockCurvature, options.lockDihedralCosine});
+                       {options.curvature, options.lockCurvature, options.lockDihedralCosine, options.order});
     if (report) *report = {levelReport(simplified, {}, start.seconds())};
     for (uint32_t level = 1; level <= options.maxLevels; ++level) {
         Stopwatch watch;

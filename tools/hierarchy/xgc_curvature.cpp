@@ -55,12 +55,14 @@ double XgcMesh::curvatureOf(uint32_t vertex) const {
 
 void XgcMesh::measureCurvature(uint32_t segment) {
     const uint32_t stamp = nextStamp();
+    const auto level = uint8_t(segments_[segment].level());
     for (const uint32_t e : segments_[segment].edges) {
         if (edges_[e].ghost) continue;
         for (const uint32_t v : edges_[e].ends) {
-            if (seen_[v] == stamp || vertices_[v].boundary) continue;
+            Vertex& vertex = vertices_[v];
+            if (seen_[v] == stamp || vertex.boundary || vertex.sharpSince < level) continue;
             seen_[v] = stamp;
-            vertices_[v].sharp = curvatureOf(v) >= double(options_.lockCurvature);
+            vertex.sharpSince = curvatureOf(v) >= double(options_.lockCurvature) ? level : kNeverSharp;
         }
     }
 }

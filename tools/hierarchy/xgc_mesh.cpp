@@ -62,11 +62,12 @@ XgcMesh::XgcMesh(const Mesh& mesh, const Topology& topology, std::span<const uin
     buildEdges(topology);
     buildFaces(mesh, topology, faceSegment);
     findBoundaries(mesh, topology);
+    findVertexSegments(topology);
     buildSegments(segmentCount);
     seen_.resize(baseVertexCount_, 0);
     touched_.resize(baseVertexCount_, 0);
     for (uint32_t v = 0; v < baseVertexCount_; ++v) {
-        if (vertices_[v].boundary) vertices_[v].sharp = curvatureOf(v) >= double(options.lockCurvature);
+        if (vertices_[v].boundary && curvatureOf(v) >= double(options.lockCurvature)) vertices_[v].sharpSince = 0;
     }
 }
 
@@ -135,6 +136,20 @@ void XgcMesh::buildSegments(uint32_t segmentCount) {
         if (faces[1] >= kCrowd || faces_[faces[0]].segment != faces_[faces[1]].segment) continue;
         if (vertices_[edges_[e].ends[0]].boundary && vertices_[edges_[e].ends[1]].boundary) continue;
         segments_[faces_[faces[0]].segment].edges.push_back(e);
+    }
+}
+
+void XgcMesh::findVertexSegments(const Topology& topology) {
+    vertexSegmentOffsets_.assign(baseVertexCount_ + 1, 0);
+    std::vector<uint32_t> around;
+    for (uint32_t v = 0; v < baseVertexCount_; ++v) {
+        if (vertices_[v].boundary) {
+            around.clear();
+            for (const uint32_t f : topology.facesOfVertex(v)) around.push_back(faces_[f].segment);
+            std::sort(around.begin(), around.end());
+            vertexSegments_.insert(vertexSegments_.end(), around.begin(), std::unique(around.begin(), around.end()));
+        }
+        vertexSegmentOffsets_[v + 1] = uint32_t(vertexSegments_.size());
     }
 }
 
@@ -260,7 +275,8 @@ size_t XgcMesh::memoryBytes() const {
     const auto bytes = [](const auto& column) { return column.size() * sizeof(column[0]); };
     size_t total = bytes(vertices_) + bytes(edges_) + bytes(faces_) + bytes(genealogies_) + bytes(edgeStates_) +
                    bytes(baseWedgeVertex_) + bytes(freeVertices_) + bytes(freeGenealogies_) + bytes(seen_) +
-                   bytes(touched_) + bytes(segments_) + bytes(crowds_);
+                   bytes(touched_) + bytes(segments_) + bytes(crowds_) + bytes(vertexSegmentOffsets_) +
+                   bytes(vertexSegments_);
     for (const Segment& s : segments_)
         total += bytes(s.faces) + bytes(s.edges) + bytes(s.collapses) + bytes(s.levelStarts);
     for (const std::vector<uint32_t>& crowd : crowds_) total += bytes(crowd);

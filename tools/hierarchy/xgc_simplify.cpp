@@ -88,6 +88,28 @@ bool XgcMesh::keepsTopology(const Collapse& c) {
     return !(reaches(c.lostEdges[0], c.faces[0], b) && reaches(c.keptEdges[0], c.faces[0], b));
 }
 
+/// Whether a segment may make an edge between two boundary vertices. Another segment that both lie on might make the
+/// same edge, and four faces would meet in it: so of all that they lie on, the first one alone may.
+bool XgcMesh::mayJoin(uint32_t segment, uint32_t v, uint32_t w) const {
+    for (const uint32_t s : segmentsOf(v)) {
+        if (std::ranges::binary_search(segmentsOf(w), s)) return s == segment;
+    }
+    return true;
+}
+
+/// A wing brings boundary vertices together that must stay apart.
+bool XgcMesh::joinsBoundaries(const Collapse& c) {
+    if (c.type != CollapseType::wing) return false;
+    const uint32_t segment = faces_[c.faces[0]].segment;
+    bool joins = false;
+    forUses(c.i, [&](uint32_t use) {
+        const uint32_t w = otherEnd(use);
+        if (w == c.j || w == c.opposite[0] || w == c.opposite[1] || !vertices_[w].boundary) return;
+        joins = joins || !mayJoin(segment, c.j, w);
+    });
+    return joins;
+}
+
 /// v_j has one wedge in the dying faces.
 bool XgcMesh::findWedge(const Collapse& c, uint32_t& wedge) const {
     std::array<uint32_t, 2> found{};
@@ -131,11 +153,11 @@ XgcPass XgcMesh::simplify(uint32_t segment) {
     const auto start = uint32_t(s.collapses.size());
     const uint32_t stamp = ++passCounter_;
     const auto level = uint8_t(s.level() + 1);
-    for (const uint32_t e : s.edges) {
+    for (const uint32_t e : edgesInOrder(segment)) {
         if (!isEligible(e, stamp)) continue;
         const Collapse c = describe(e);
         uint32_t wedge = kNone;
-        if (!keepsTopology(c)) {
+        if (!keepsTopology(c) || joinsBoundaries(c)) {
             ++pass.linkRefused;
         } else if (c.type == CollapseType::wing && !findWedge(c, wedge)) {
             ++pass.wedgeRefused;
@@ -152,11 +174,31 @@ XgcPass XgcMesh::simplify(uint32_t segment) {
     return pass;
 }
 
+std::vector<uint32_t> XgcMesh::edgesInOrder(uint32_t segment) const {
+    std::vector<uint32_t> order;
+    if (options_.order == EdgeOrder::byIndex) {
+        for (const uint32_t e : segments_[segment].edges) {
+            if (!edges_[e].ghost) order.push_back(e);
+        }
+        return order;
+    }
+    std::vector<std::pair<float, uint32_t>> keyed;
+    for (const uint32_t e : segments_[segment].edges) {
+        if (edges_[e].ghost) continue;
+        const std::array<uint32_t, 2> faces = edges_[e].faces;
+        keyed.emplace_back(-glm::dot(faces_[faces[0]].normal, faces_[faces[1]].normal), e);
+    }
+    std::sort(keyed.begin(), keyed.end());
+    order.reserve(keyed.size());
+    for (const auto& [angle, e] : keyed) order.push_back(e);
+    return order;
+}
+
 bool XgcMesh::isEligible(uint32_t edge, uint32_t stamp) const {
     const Edge& e = edges_[edge];
     if (e.ghost || touched_[e.ends[0]] == stamp || touched_[e.ends[1]] == stamp) return false;
     const Vertex &v = vertices_[e.ends[0]], &w = vertices_[e.ends[1]];
-    if ((v.boundary && w.boundary) || v.sharp || w.sharp) return false;
+    if ((v.boundary && w.boundary) || v.sharpSince != kNeverSharp || w.sharpSince != kNeverSharp) return false;
     if (options_.lockDihedralCosine <= -1) return true;
     return glm::dot(faces_[e.faces[0]].normal, faces_[e.faces[1]].normal) >= options_.lockDihedralCosine;
 }

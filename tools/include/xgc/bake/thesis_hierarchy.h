@@ -7,9 +7,10 @@ namespace xgc::bake {
 
 struct ThesisHierarchyOptions {
     CurvatureNorm curvature = CurvatureNorm::trace;
-    float lockCurvature = 0.5f;    ///< vertices with K at or above it are locked with their edges
-    float lockDihedralCosine = -1; ///< see XgcOptions; -1 locks none
-    uint32_t maxLevels = 32;       ///< levels above 0, at most; building stops where no part collapses any more
+    float lockCurvature = 0.5f; ///< see XgcOptions for these four
+    float lockDihedralCosine = -1;
+    EdgeOrder order = EdgeOrder::flattestFirst;
+    uint32_t maxLevels = 32; ///< levels above 0, at most; building stops where no part collapses any more
 };
 
 /// One patch for each part and material that meet in a face, ordered by part, then material.

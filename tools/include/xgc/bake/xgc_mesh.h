@@ -15,7 +15,13 @@ enum class CurvatureNorm {
     frobenius, ///< sqrt of the sum of squared entries, as printed in Eq. 4.4
 };
 
-/// What keeps an edge from collapsing, beside the boundaries of segments.
+/// The order in which a pass tries the edges of a segment.
+enum class EdgeOrder {
+    flattestFirst, ///< by the angle between the faces at the start of the pass, ties by index
+    byIndex,
+};
+
+/// What keeps an edge from collapsing, beside the boundaries of segments, and which of them go first.
 struct XgcOptions {
     CurvatureNorm curvature = CurvatureNorm::trace;
     /// Vertices with K at or above it are locked with their edges.
@@ -23,6 +29,8 @@ struct XgcOptions {
     /// Edges whose face normals have a smaller dot product are locked: the criterion of figure 4.5 for plain
     /// meshes. -1 locks none.
     float lockDihedralCosine = -1;
+    /// The thesis iterates over an array of edges without saying in which order: by angle it comes to its figures.
+    EdgeOrder order = EdgeOrder::flattestFirst;
 };
 
 enum class CollapseType : uint8_t {
@@ -57,13 +65,15 @@ struct XgcPass {
 /// ends and faces, faces their edges), with what its simplification hid (ghosts) and with segments, each of
 /// which stands at a level of its own. Indices take the place of pointers.
 ///
-/// One level of a segment is one pass over its edges, in index order. An edge collapses unless
+/// One level of a segment is one pass over its edges. An edge collapses unless
 /// - it shares an end with an edge that collapsed in this pass (primary rule),
 /// - both its ends lie on a boundary (secondary rule; chords included), or it lies on one,
-/// - one of its ends has high curvature,
+/// - one of its ends has high curvature, at this level or at a finer one,
 /// - the link test, the flip test or a seam of attributes forbids it.
-/// A flip is a face that turns by 90 degrees or more against itself before, or comes to lie 90 degrees or more
-/// away from itself at level 0; faces without area have no normal to compare with.
+/// The link test also keeps two segments from making the same edge between boundary vertices, each on its side: the
+/// first segment that both vertices lie on may make it, the others not. So each edge of a closed manifold has two
+/// faces at any levels. A flip is a face that turns by 90 degrees or more against itself before, or comes to lie 90
+/// degrees or more away from itself at level 0; faces without area have no normal to compare with.
 ///
 /// On a boundary lie the vertices of edges that have not two faces of one segment running along them opposite
 /// ways, those around which the faces form more than one fan, and those with more than one wedge. They never move.
@@ -71,6 +81,8 @@ struct XgcPass {
 /// edges between them), so the levels of a segment are the same whatever its neighbours do.
 class XgcMesh {
 public:
+    static constexpr uint8_t kNeverSharp = 255;
+
     struct Vertex {
         glm::vec3 position{0};
         uint32_t firstUse = kNone; ///< of the ring of its incident edges; kNone for ghosts
@@ -78,7 +90,8 @@ public:
         uint32_t wedge = kNone; ///< its only one, or kNone
         uint8_t level = 0;      ///< of its segment when it was made
         bool boundary = false;
-        bool sharp = false; ///< high curvature, as of the last pass (boundary: of level 0)
+        /// First level of its segment at which it was found to have high curvature; it stays locked from there on.
+        uint8_t sharpSince = kNeverSharp;
         bool ghost = false;
     };
     struct Edge {
@@ -176,6 +189,7 @@ private:
     void findBoundaries(const Mesh& mesh, const Topology& topology);
     bool isOneFan(const Mesh& mesh, const Topology& topology, uint32_t vertex) const;
     void buildSegments(uint32_t segmentCount);
+    void findVertexSegments(const Topology& topology);
 
     void linkUse(uint32_t use);
     void unlinkUse(uint32_t use);
@@ -196,10 +210,17 @@ private:
     uint32_t nextStamp();
 
     void measureCurvature(uint32_t segment);
+    std::vector<uint32_t> edgesInOrder(uint32_t segment) const;
     bool isEligible(uint32_t edge, uint32_t stamp) const;
     Collapse describe(uint32_t edge) const;
     bool isKnownTo(uint32_t segment, uint32_t edge) const;
     bool keepsTopology(const Collapse& c);
+    bool mayJoin(uint32_t segment, uint32_t v, uint32_t w) const;
+    bool joinsBoundaries(const Collapse& c);
+    std::span<const uint32_t> segmentsOf(uint32_t boundaryVertex) const {
+        return {vertexSegments_.data() + vertexSegmentOffsets_[boundaryVertex],
+                vertexSegmentOffsets_[boundaryVertex + 1] - vertexSegmentOffsets_[boundaryVertex]};
+    }
     bool findWedge(const Collapse& c, uint32_t& wedge) const;
     bool keepsFaces(const Collapse& c, uint32_t vertex) const;
     static bool turns(glm::vec3 before, glm::dvec3 after);
@@ -216,7 +237,9 @@ private:
     std::vector<Segment> segments_;
     std::vector<Genealogy> genealogies_;
     std::vector<EdgeState> edgeStates_;
-    std::vector<std::vector<uint32_t>> crowds_; ///< faces of edges with more than two
+    std::vector<std::vector<uint32_t>> crowds_;  ///< faces of edges with more than two
+    std::vector<uint32_t> vertexSegmentOffsets_; ///< per vertex of level 0, into vertexSegments_
+    std::vector<uint32_t> vertexSegments_;       ///< of boundary vertices, rising
     // Freed by refinement, for the next simplification.
     std::vector<uint32_t> freeVertices_;
     std::vector<uint32_t> freeGenealogies_;
