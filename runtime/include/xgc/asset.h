@@ -38,7 +38,8 @@ struct AssetView {
     std::span<const format::VertexRange> vertexRanges;
     std::span<const format::PatchRecord> patches;
     std::span<const uint32_t> patchDomains;
-    std::span<const float> patchErrors; ///< patch * levelCount + level, mesh units
+    std::span<const uint32_t> patchSlots; ///< beside patchDomains: first slot of the domain in the patch
+    std::span<const float> patchErrors;   ///< patch * levelCount + level, mesh units
     std::span<const format::BandEnd> patchBands;
     std::span<const format::PartRecord> parts;
     std::span<const uint32_t> partNeighbours;
@@ -71,6 +72,10 @@ struct AssetView {
     std::span<const uint32_t> domainsOf(uint32_t patch) const {
         return patchDomains.subspan(patches[patch].firstDomain, patches[patch].domainCount);
     }
+    /// First slot of each of those domains.
+    std::span<const uint32_t> domainSlotsOf(uint32_t patch) const {
+        return patchSlots.subspan(patches[patch].firstDomain, patches[patch].domainCount);
+    }
     std::span<const uint32_t> patchesOf(uint32_t domain) const {
         return domainPatches.subspan(domains[domain].firstPatch, domains[domain].patchCount);
     }
@@ -81,11 +86,12 @@ struct AssetView {
     }
 };
 
-/// Checks and opens the tables of an asset: memory safety only (ranges, orders, inclusion of
-/// domains, capacities), not the truth of its errors, which is the tool's `verify`.
+/// Checks and opens the tables of an asset: memory safety and one genealogy for all patches (ranges,
+/// orders, inclusion of domains, capacities), not the truth of errors, bounds and deaths, which is the
+/// tool's `verify`.
 ///
 /// `bytes`: at least FileHeader::tableBytes of the file, aligned to format::kAlignment, kept alive
-/// by the caller. Linear in what it reads; no allocation, no exception. On failure `out` is
+/// by the caller. One pass over what it reads; no allocation, no exception. On failure `out` is
 /// untouched and the status names the element.
 Status openTables(std::span<const std::byte> bytes, AssetView& out);
 

@@ -28,7 +28,7 @@ enum class SectionId : uint32_t {
     domainPatches = 5,   ///< u32[]: patches of each domain, rising
     vertexRanges = 6,    ///< VertexRange[(domainCount + patchCount) * tierCount]
     patches = 7,         ///< PatchRecord[patchCount], by part
-    patchDomains = 8,    ///< u32[]: domains of each patch, rising
+    patchDomains = 8,    ///< u32[]: domains of each patch, rising; d is listed by p where p is in d's patches
     patchErrors = 9,     ///< f32[patchCount * levelCount]
     patchBands = 10,     ///< BandEnd[patchCount * bandCount]
     parts = 11,          ///< PartRecord[partCount]
@@ -38,13 +38,15 @@ enum class SectionId : uint32_t {
     strings = 15,        ///< UTF-8, no terminators
     pages = 16,          ///< PageRecord[]
     streams = 17,        ///< StreamRecord[]
+    patchSlots = 18,     ///< u32[]: beside patchDomains, times tierCount: first slot of the domain in the patch
     // Reserved for later versions of the writer; a reader skips ids that it does not know.
     mergeTree = 64,
     contours = 65,
     morphTargets = 66,
     skins = 67,
     locks = 68,
-    provenance = 69, ///< UTF-8 JSON: settings, hash of the input, version of the tool
+    provenance = 69, ///< UTF-8 JSON: settings, hash of the input, version of the tool (written by version 1)
+    patchTiers = 70, ///< per patch and tier after the first: its firsts and counts in that tier's pages
 };
 
 enum class Codec : uint32_t { none = 0, zstd = 1, meshopt = 2 };
@@ -99,7 +101,7 @@ struct AssetRecord {
     float boundsMax[3];
     float sphereCenter[3];
     float sphereRadius;
-    uint32_t reserved[6];
+    uint32_t reserved[6]; ///< zero; later the origin (3) and step (1) of the grid of quantised positions
 };
 static_assert(sizeof(AssetRecord) == 128);
 
@@ -113,12 +115,14 @@ static_assert(sizeof(LevelRecord) == 16);
 
 struct DomainRecord {
     uint32_t firstPatch; ///< in domainPatches
-    uint32_t patchCount; ///< 2 or more, or 1 (open borders, promoted vertices)
+    uint32_t patchCount; ///< at least 1; version 1 keeps rows of one patch in its interior and writes 2 or more
+    uint32_t pageGroup;  ///< whose pages hold its rows
+    uint32_t reserved;
 };
-static_assert(sizeof(DomainRecord) == 8);
+static_assert(sizeof(DomainRecord) == 16);
 
 /// Rows of one domain or of one patch's interior in one tier. Entry g * tierCount + tier, where g
-/// counts the domains and then the patches.
+/// counts the domains and then the patches. Together the ranges tile the vertex rows.
 struct VertexRange {
     uint32_t first;
     uint32_t count;
@@ -135,8 +139,8 @@ struct PatchRecord {
     uint32_t firstDomain; ///< in patchDomains
     uint32_t domainCount;
     uint32_t slotCount;         ///< vertices of its domains in list order, then of its interior
-    uint32_t interiorFaceCount; ///< faces that never touch a boundary at any level
-    uint32_t boundaryFaceCount; ///< faces that may
+    uint32_t interiorFaceCount; ///< faces whose death depends on the level of this patch alone
+    uint32_t boundaryFaceCount; ///< faces that a neighbour's level may make degenerate
     uint32_t firstFace;         ///< in the death stream; the interior faces come first
     uint32_t firstCorner;       ///< in the narrow or wide corner stream, three a face
     uint32_t firstParent;       ///< in the narrow or wide parent stream, one a slot
@@ -146,8 +150,8 @@ struct PatchRecord {
     float boxMax[3];
     float sphereCenter[3]; ///< likewise
     float sphereRadius;
-    float coneAxis[3]; ///< unit; normals n of the patch have dot(n, axis) >= coneCosine ...
-    float coneCosine;  ///< ... at levels <= coneLevel; -1 where there is no cone
+    float coneAxis[3]; ///< unit; face normals n of the patch have dot(n, axis) >= coneCosine ...
+    float coneCosine;  ///< ... at its levels <= coneLevel, whatever its neighbours do; -1 where there is no cone
     uint32_t coneLevel;
     uint32_t reserved[5];
 };
@@ -221,6 +225,7 @@ struct PageRecord {
 };
 static_assert(sizeof(PageRecord) == 64);
 
+/// A reader skips kinds that it does not know.
 enum class StreamKind : uint32_t {
     // one element a vertex row
     position = 1,

@@ -1,0 +1,286 @@
+#include "open.h"
+
+#include <algorithm>
+#include <cmath>
+
+// Arrays that are cut into runs (domains into patches, parts into patches, ...) must be cut without gap or overlap
+// and to the end: a running sum is then all that it takes to know that every range is valid.
+
+namespace xgc {
+namespace {
+
+using namespace format;
+
+bool finite(std::span<const float> values) {
+    return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
+}
+
+bool rising(std::span<const uint32_t> values) {
+    return std::adjacent_find(values.begin(), values.end(), [](uint32_t a, uint32_t b) { return a >= b; }) ==
+           values.end();
+}
+
+bool allBelow(std::span<const uint32_t> values, uint32_t end) {
+    return std::all_of(values.begin(), values.end(), [&](uint32_t v) { return v < end; });
+}
+
+Status checkCounts(const AssetView& v) {
+    const AssetRecord& r = *v.record;
+    if (r.tierCount != 1 || r.pageGroupCount != 1)
+        return unsupported("the asset has several tiers or page groups; bake it with this version");
+    if (r.levelCount == 0 || r.levelCount > kMaxLevels) return corrupt("level count out of range", r.levelCount);
+    if (r.bandCount == 0 || r.bandCount > kMaxBands) return corrupt("band count out of range", r.bandCount);
+    if (r.materialCount == 0 || r.partCount == 0 || r.patchCount == 0)
+        return corrupt("the asset has no material, part or patch");
+    if (v.levels.size() != r.levelCount) return corrupt("section levels has another count than the asset");
+    if (v.bands.size() != r.bandCount) return corrupt("section bands has another count than the asset");
+    if (v.domains.size() != r.domainCount) return corrupt("section domains has another count than the asset");
+    if (v.patches.size() != r.patchCount) return corrupt("section patches has another count than the asset");
+    if (v.parts.size() != r.partCount) return corrupt("section parts has another count than the asset");
+    if (v.materials.size() != r.materialCount) return corrupt("section materials has another count than the asset");
+    if (v.nodes.size() != r.nodeCount) return corrupt("section nodes has another count than the asset");
+    if (v.vertexRanges.size() != uint64_t(r.domainCount) + r.patchCount)
+        return corrupt("section vertexRanges has another count than domains and patches");
+    if (v.patchErrors.size() != uint64_t(r.patchCount) * r.levelCount)
+        return corrupt("section patchErrors has another count than patches times levels");
+    if (v.patchBands.size() != uint64_t(r.patchCount) * r.bandCount)
+        return corrupt("section patchBands has another count than patches times bands");
+    if (v.patchSlots.size() != v.patchDomains.size())
+        return corrupt("section patchSlots has another count than patchDomains");
+    if (r.baseVertexCount > r.vertexCount || r.positionCount > r.baseVertexCount)
+        return corrupt("the asset has more base vertices or positions than vertex rows");
+    if (!finite(r.boundsMin) || !finite(r.boundsMax) || !finite(r.sphereCenter) || !(r.sphereRadius >= 0) ||
+        !std::isfinite(r.sphereRadius))
+        return corrupt("bounds of the asset are not finite");
+    return {};
+}
+
+Status checkLevels(const AssetView& v) {
+    for (size_t i = 0; i < v.levels.size(); ++i) {
+        const LevelRecord& level = v.levels[i];
+        if (!std::isfinite(level.threshold) || !std::isfinite(level.maxError))
+            return corrupt("level with an error that is not finite", i);
+        if (level.faceCount > v.record->faceCount) return corrupt("level with more faces than the asset", i);
+    }
+    return {};
+}
+
+Status checkBands(const AssetView& v) {
+    for (size_t i = 0; i < v.bands.size(); ++i) {
+        if (v.bands[i] == 0 || v.bands[i] > kNever) return corrupt("band with a death level out of range", i);
+        if (i > 0 && v.bands[i] >= v.bands[i - 1]) return corrupt("band that does not fall", i);
+    }
+    return {};
+}
+
+/// Widest first, then by patches: so that a domain that includes another comes before it.
+bool domainsInOrder(std::span<const uint32_t> a, std::span<const uint32_t> b) {
+    if (a.size() != b.size()) return a.size() > b.size();
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+}
+
+Status checkDomains(const AssetView& v) {
+    uint64_t next = 0;
+    for (uint32_t d = 0; d < v.domains.size(); ++d) {
+        const DomainRecord& domain = v.domains[d];
+        if (domain.firstPatch != next || domain.patchCount == 0 || domain.patchCount > v.domainPatches.size() - next)
+            return corrupt("domain with a wrong run of patches", d);
+        next += domain.patchCount;
+        const std::span<const uint32_t> patches = v.patchesOf(d);
+        if (!rising(patches) || patches.back() >= v.record->patchCount)
+            return corrupt("domain with patches out of order or range", d);
+        if (d > 0 && !domainsInOrder(v.patchesOf(d - 1), patches)) return corrupt("domain out of order", d);
+        if (domain.pageGroup != 0) return corrupt("domain of a page group that is not there", d);
+    }
+    if (next != v.domainPatches.size()) return corrupt("section domainPatches holds more than the domains do");
+    return {};
+}
+
+Status checkRanges(const AssetView& v) {
+    uint64_t next = 0;
+    for (uint64_t g = 0; g < v.vertexRanges.size(); ++g) {
+        if (v.vertexRanges[g].first != next) return corrupt("vertex range that leaves a gap or overlaps", g);
+        next += v.vertexRanges[g].count;
+    }
+    if (next != v.record->vertexCount) return corrupt("vertex ranges do not end at the vertex count");
+    return {};
+}
+
+/// The domains of a patch, each of which lists the patch, and the slots of their rows.
+Status checkPatchDomains(const AssetView& v, uint32_t p) {
+    const std::span<const uint32_t> domains = v.domainsOf(p);
+    if (!rising(domains) || !allBelow(domains, v.record->domainCount))
+        return corrupt("patch with domains out of order or range", p);
+    uint64_t slot = 0;
+    for (size_t i = 0; i < domains.size(); ++i) {
+        const std::span<const uint32_t> patches = v.patchesOf(domains[i]);
+        if (!std::binary_search(patches.begin(), patches.end(), p))
+            return corrupt("patch with a domain that does not list it", p);
+        if (v.domainSlotsOf(p)[i] != slot) return corrupt("patch with a wrong first slot of a domain", p);
+        slot += v.domainRange(domains[i]).count;
+    }
+    slot += v.interiorRange(p).count;
+    if (slot != v.patches[p].slotCount) return corrupt("patch with another slot count than its vertex rows", p);
+    return {};
+}
+
+Status checkPatchBands(const AssetView& v, uint32_t p) {
+    const std::span<const BandEnd> ends = v.patchBands.subspan(size_t(p) * v.record->bandCount, v.record->bandCount);
+    for (size_t b = 1; b < ends.size(); ++b) {
+        if (ends[b].interior < ends[b - 1].interior || ends[b].boundary < ends[b - 1].boundary)
+            return corrupt("patch with bands that do not rise", p);
+    }
+    if (ends.back().interior != v.patches[p].interiorFaceCount ||
+        ends.back().boundary != v.patches[p].boundaryFaceCount)
+        return corrupt("patch with bands that do not end at its face counts", p);
+    return {};
+}
+
+Status checkPatchBounds(const AssetView& v, uint32_t p) {
+    const PatchRecord& patch = v.patches[p];
+    if (!finite(patch.boxMin) || !finite(patch.boxMax) || !finite(patch.sphereCenter) || !finite(patch.coneAxis) ||
+        !std::isfinite(patch.sphereRadius) || !(patch.sphereRadius >= 0))
+        return corrupt("patch with bounds that are not finite", p);
+    if (!(patch.coneCosine >= -1 && patch.coneCosine <= 1) || patch.coneLevel >= v.record->levelCount)
+        return corrupt("patch with a wrong normal cone", p);
+    return {};
+}
+
+/// Where the runs of a patch must start.
+struct PatchFirsts {
+    uint64_t domain = 0, face = 0, narrowFace = 0, wideFace = 0, narrowSlot = 0, wideSlot = 0;
+};
+
+Status checkPatchRuns(const AssetView& v, uint32_t p, PatchFirsts& next) {
+    const PatchRecord& patch = v.patches[p];
+    if (patch.flags & ~uint32_t(kWideSlots)) return unsupported("patch with unknown flags; update xgc", p);
+    const bool wide = patch.flags & kWideSlots;
+    if (!wide && patch.slotCount > 65536) return corrupt("patch with too many slots for 16 bits", p);
+    if (patch.part >= v.record->partCount || patch.material >= v.record->materialCount)
+        return corrupt("patch with a part or material that is not there", p);
+    if (patch.pageGroup != 0) return corrupt("patch of a page group that is not there", p);
+    if (patch.firstDomain != next.domain || patch.domainCount > v.patchDomains.size() - next.domain)
+        return corrupt("patch with a wrong run of domains", p);
+    uint64_t& nextFace = wide ? next.wideFace : next.narrowFace;
+    uint64_t& nextSlot = wide ? next.wideSlot : next.narrowSlot;
+    if (patch.firstFace != next.face || patch.firstCorner != 3 * nextFace || patch.firstParent != nextSlot)
+        return corrupt("patch with a wrong first face, corner or parent", p);
+    const uint64_t faces = uint64_t(patch.interiorFaceCount) + patch.boundaryFaceCount;
+    next.domain += patch.domainCount;
+    next.face += faces;
+    nextFace += faces;
+    nextSlot += patch.slotCount;
+    return {};
+}
+
+Status checkPatches(const AssetView& v) {
+    PatchFirsts next;
+    uint32_t maxSlots = 0;
+    uint64_t maxFaces = 0;
+    for (uint32_t p = 0; p < v.patches.size(); ++p) {
+        if (Status s = checkPatchRuns(v, p, next); !s.ok()) return s;
+        if (Status s = checkPatchDomains(v, p); !s.ok()) return s;
+        if (Status s = checkPatchBands(v, p); !s.ok()) return s;
+        if (Status s = checkPatchBounds(v, p); !s.ok()) return s;
+        maxSlots = std::max(maxSlots, v.patches[p].slotCount);
+        maxFaces = std::max(maxFaces, uint64_t(v.patches[p].interiorFaceCount) + v.patches[p].boundaryFaceCount);
+    }
+    if (next.domain != v.patchDomains.size()) return corrupt("section patchDomains holds more than the patches do");
+    // Every pair of one side is in the other; equal counts make the two sides the same.
+    if (v.patchDomains.size() != v.domainPatches.size()) return corrupt("a domain lists a patch that does not list it");
+    if (next.face != v.record->faceCount) return corrupt("the patches hold another count of faces than the asset");
+    if (maxSlots != v.record->maxPatchSlots || maxFaces != v.record->maxPatchFaces)
+        return corrupt("the asset's capacities are not those of its patches");
+    if (3 * maxFaces > UINT32_MAX) return corrupt("a patch has more corners than 32 bits count");
+    return {};
+}
+
+Status checkErrors(const AssetView& v) {
+    for (uint32_t p = 0; p < v.patches.size(); ++p) {
+        float before = 0;
+        for (uint32_t level = 0; level < v.record->levelCount; ++level) {
+            const float error = v.error(p, level);
+            if (!std::isfinite(error) || !(error >= before)) return corrupt("patch with an error that falls", p);
+            before = error;
+        }
+    }
+    return {};
+}
+
+bool inStrings(const AssetView& v, Text text) {
+    return uint64_t(text.offset) + text.bytes <= v.strings.size();
+}
+
+Status checkParts(const AssetView& v) {
+    uint64_t nextPatch = 0, nextNeighbour = 0;
+    for (uint32_t i = 0; i < v.parts.size(); ++i) {
+        const PartRecord& part = v.parts[i];
+        if (!inStrings(v, part.name)) return corrupt("part with a name past the strings", i);
+        if (part.firstPatch != nextPatch || part.patchCount > v.patches.size() - nextPatch)
+            return corrupt("part with a wrong run of patches", i);
+        for (uint32_t p = 0; p < part.patchCount; ++p) {
+            if (v.patches[nextPatch + p].part != i) return corrupt("patch that its part does not hold", nextPatch + p);
+        }
+        if (part.firstNeighbour != nextNeighbour || part.neighbourCount > v.partNeighbours.size() - nextNeighbour)
+            return corrupt("part with a wrong run of neighbours", i);
+        const std::span<const uint32_t> neighbours = v.partNeighbours.subspan(nextNeighbour, part.neighbourCount);
+        if (!rising(neighbours) || !allBelow(neighbours, v.record->partCount))
+            return corrupt("part with neighbours out of order or range", i);
+        if (!std::isfinite(part.importance) || !(part.importance >= 0) || !std::isfinite(part.area) ||
+            !finite(part.centroid))
+            return corrupt("part with figures that are not finite", i);
+        nextPatch += part.patchCount;
+        nextNeighbour += part.neighbourCount;
+    }
+    if (nextPatch != v.patches.size()) return corrupt("the parts do not hold all patches");
+    if (nextNeighbour != v.partNeighbours.size()) return corrupt("section partNeighbours holds more than the parts do");
+    return {};
+}
+
+Status checkMaterials(const AssetView& v) {
+    for (uint32_t i = 0; i < v.materials.size(); ++i) {
+        const MaterialRecord& m = v.materials[i];
+        if (!inStrings(v, m.name)) return corrupt("material with a name past the strings", i);
+        if (!finite(m.baseColor) || !finite(m.emissive) || !std::isfinite(m.metallic) || !std::isfinite(m.roughness))
+            return corrupt("material with figures that are not finite", i);
+    }
+    return {};
+}
+
+Status checkNodes(const AssetView& v) {
+    for (uint32_t i = 0; i < v.nodes.size(); ++i) {
+        const NodeRecord& node = v.nodes[i];
+        if (!inStrings(v, node.name)) return corrupt("node with a name past the strings", i);
+        if (node.parent != kNone && node.parent >= i) return corrupt("node before its parent", i);
+        if (!finite(node.toMesh)) return corrupt("node with a transform that is not finite", i);
+    }
+    return {};
+}
+
+Status checkPageTable(const AssetView& v) {
+    if (v.pages.size() != 1) return corrupt("the asset has not one page", v.pages.size());
+    const PageRecord& page = v.pages[0];
+    const FileHeader& header = *reinterpret_cast<const FileHeader*>(v.bytes.data());
+    if (page.codec != Codec::none) return unsupported("the page is compressed; decode the file with xgc::load first");
+    if (page.tier != 0 || page.group != 0 || page.firstLevel != 0 || page.lastLevel + 1 != v.record->levelCount)
+        return corrupt("the page has a wrong tier, group or range of levels");
+    if (page.offset != header.tableBytes || page.storedBytes != page.rawBytes ||
+        page.storedBytes != header.fileBytes - header.tableBytes)
+        return corrupt("the page does not fill the file behind the tables");
+    if (page.firstStream != 0 || page.streamCount != v.streams.size())
+        return corrupt("the page has a wrong run of streams");
+    return {};
+}
+
+} // namespace
+
+Status checkTables(const AssetView& view) {
+    for (Status (*check)(const AssetView&) :
+         {checkCounts, checkLevels, checkBands, checkDomains, checkRanges, checkPatches, checkErrors, checkParts,
+          checkMaterials, checkNodes, checkPageTable}) {
+        if (Status s = check(view); !s.ok()) return s;
+    }
+    return {};
+}
+
+} // namespace xgc

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <xgc/asset.h>
+
+// The steps of `openTables` and `openAll`. Each reads what the steps before it have proved, fills its part of the
+// view or checks it, and names the first element that breaks a rule of FORMAT.md.
+
+namespace xgc {
+
+inline Status corrupt(const char* message, uint64_t element = 0) {
+    return {StatusCode::corrupt, message, element};
+}
+
+inline Status unsupported(const char* message, uint64_t element = 0) {
+    return {StatusCode::unsupported, message, element};
+}
+
+inline constexpr uint64_t alignUp(uint64_t offset) {
+    return (offset + format::kAlignment - 1) / format::kAlignment * format::kAlignment;
+}
+
+/// Relations within and between the tables (check_tables.cpp).
+Status checkTables(const AssetView& view);
+
+/// Installs the streams of the one page of version 1 (open_page.cpp).
+Status installPage(AssetView& view);
+
+/// What the streams hold, row by row, slot by slot, face by face (check_page.cpp).
+Status checkPage(const AssetView& view);
+
+} // namespace xgc
