@@ -1,0 +1,135 @@
+#pragma once
+
+#include <xgc/bake/asset_writer.h>
+#include <xgc/format.h>
+
+#include <glm/vec3.hpp>
+
+// The steps of `layOutAsset`. Each is a function of the mesh, its hierarchy and the results of the steps before:
+// domains -> faces (deaths, bands, order) -> rows (order of the vertices) -> slots (parents, corners), and beside
+// them bounds, parts and the attribute streams.
+
+namespace xgc::bake::layout {
+
+/// Domains of two patches or more in the file's order. A domain of one patch has its rows in that patch's interior.
+struct Domains {
+    std::vector<std::vector<uint32_t>> sets;
+    /// Per domain of the hierarchy its *group*: an index in `sets`, or sets.size() + patch. kNone where no face uses
+    /// it.
+    std::vector<uint32_t> groupOf;
+    std::vector<std::vector<uint32_t>> ofPatch; ///< rising
+
+    bool isShared(uint32_t group) const { return group < sets.size(); }
+};
+
+/// Wedges that a corner of a face, or a parent up from one, refers to: 1, else 0.
+std::vector<uint8_t> usedWedges(const Mesh& mesh, const Hierarchy& hierarchy);
+Domains orderDomains(const Hierarchy& hierarchy, const std::vector<uint8_t>& used);
+
+/// Faces patch by patch, each patch interior faces first, each run band by band, each band for the vertex cache.
+struct Faces {
+    std::vector<uint32_t> bands;           ///< least death level of each band, falling
+    std::vector<uint32_t> order;           ///< mesh faces
+    std::vector<uint8_t> deaths;           ///< beside order
+    std::vector<uint32_t> firstFace;       ///< per patch, and the end
+    std::vector<uint32_t> interiorCount;   ///< per patch
+    std::vector<format::BandEnd> bandEnds; ///< patch * bandCount + band
+    std::vector<uint32_t> levelFaceCounts; ///< triangles of the uniform states
+};
+Faces orderFaces(const Mesh& mesh, const Hierarchy& hierarchy, const Domains& domains);
+
+/// Misses of a vertex cache of 16 per triangle, at each uniform level, over the patches one after the other.
+std::vector<float> measureAcmr(const Mesh& mesh, const Hierarchy& hierarchy, const Faces& faces);
+
+/// Vertex rows group by group.
+struct Rows {
+    std::vector<uint32_t> wedgeOf; ///< per row
+    std::vector<uint32_t> rowOf;   ///< per wedge; kNone where it has none
+    std::vector<format::VertexRange> ranges;
+};
+Rows orderRows(const Mesh& mesh, const Hierarchy& hierarchy, const Domains& domains, const Faces& faces);
+
+/// Parents and corners as slots of their patches, 16 or 32 bits wide by patch.
+struct Slots {
+    struct PatchRun {
+        uint32_t slotCount = 0;
+        uint32_t firstParent = 0;
+        uint32_t firstCorner = 0;
+        bool wide = false;
+    };
+    std::vector<PatchRun> patches;
+    std::vector<uint32_t> patchSlots; ///< first slot of each domain of each patch
+    std::vector<uint16_t> parentsNarrow, cornersNarrow;
+    std::vector<uint32_t> parentsWide, cornersWide;
+};
+Slots numberSlots(const Mesh& mesh, const Hierarchy& hierarchy, const Domains& domains, const Faces& faces,
+                  const Rows& rows);
+
+struct Sphere {
+    glm::vec3 center{0};
+    float radius = 0;
+};
+struct Bounds {
+    glm::vec3 low{0}, high{0};
+    Sphere sphere;
+};
+/// A box, and a sphere with a small radius, around points. Rounded outwards.
+Bounds boundsOf(std::span<const glm::vec3> points);
+/// Around all that a patch can draw in any state. `scratch`: one entry a wedge, zero before the first call.
+Bounds boundsOfPatch(const Mesh& mesh, const Hierarchy& hierarchy, std::span<const uint32_t> faces, uint32_t patch,
+                     std::vector<uint32_t>& scratch);
+
+struct Cone {
+    glm::vec3 axis{0, 0, 1};
+    float cosine = -1; ///< -1: no cone
+    uint32_t level = 0;
+};
+/// A cone around the normals of all that the patch can draw at levels up to the cone's.
+Cone coneOfPatch(const Mesh& mesh, const Hierarchy& hierarchy, std::span<const uint32_t> faces);
+
+struct PartFigures {
+    uint32_t faceCount = 0;
+    double area = 0;
+    glm::dvec3 centroid{0};
+    std::vector<uint32_t> neighbours; ///< parts that share an edge, rising
+};
+std::vector<PartFigures> measureParts(const Mesh& mesh, const Segmentation& parts);
+
+/// Collects sections and streams, and joins them into the bytes of a file.
+class FileBuilder {
+public:
+    template <typename T>
+    void section(format::SectionId id, std::span<const T> elements) {
+        addSection(id, std::as_bytes(elements), uint32_t(elements.size()), sizeof(T));
+    }
+    template <typename T>
+    void stream(format::StreamKind kind, format::StreamFormat format, uint32_t set, std::span<const T> elements) {
+        addStream(kind, format, set, std::as_bytes(elements), uint32_t(elements.size()), sizeof(T));
+    }
+    /// Sections and streams may come in any order; empty ones are left out.
+    void finish(uint32_t levelCount, std::vector<std::byte>& out);
+
+private:
+    struct Section {
+        format::SectionRecord record;
+        std::vector<std::byte> bytes;
+    };
+    struct Stream {
+        format::StreamRecord record;
+        std::vector<std::byte> bytes;
+    };
+    void addSection(format::SectionId id, std::span<const std::byte> bytes, uint32_t count, uint32_t stride);
+    void addStream(format::StreamKind kind, format::StreamFormat format, uint32_t set, std::span<const std::byte> bytes,
+                   uint32_t count, uint32_t stride);
+
+    std::vector<Section> sections_;
+    std::vector<Stream> streams_;
+};
+
+/// Adds the streams that a renderer uploads.
+void addVertexStreams(const Hierarchy& hierarchy, const Rows& rows, FileBuilder& file);
+
+/// XXH64 with seed 0.
+uint64_t hash(std::span<const std::byte> bytes);
+
+} // namespace xgc::bake::layout
