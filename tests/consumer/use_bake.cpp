@@ -1,14 +1,15 @@
-#include <xgc/bake/hierarchy.h>
+#include <xgc/bake/bake.h>
 
-#include <array>
 #include <cstdio>
+#include <filesystem>
 
-// Links the bake pipeline as a tool does.
-int main() {
-    xgc::bake::Hierarchy hierarchy;
-    hierarchy.domainPatches = {{0, 1}};
-    const std::array<uint8_t, 2> levels = {3, 1};
-    const uint32_t level = hierarchy.domainLevel(0, levels);
-    std::printf("the border stands at level %u\n", level);
-    return level == 1 ? 0 : 1;
+// Links the bake pipeline as a tool does: bakes the model that is named.
+int main(int argc, char** argv) {
+    xgc::bake::BakeOptions options;
+    options.input = argc > 1 ? argv[1] : "no such file.obj";
+    options.output = argc > 2 ? argv[2] : "out.xgc";
+    xgc::bake::BakeReport report;
+    const xgc::bake::Status status = xgc::bake::bake(options, report);
+    std::printf("%s\n", status.ok() ? "baked" : status.message.c_str());
+    return int(status.outcome);
 }

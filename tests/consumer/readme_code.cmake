@@ -1,0 +1,17 @@
+# cmake -DREADME=README.md -DPROGRAM=use_runtime.cpp -P readme_code.cmake
+# Every line of the README's C++ stands in a program that is compiled and run.
+file(READ ${README} readme)
+file(READ ${PROGRAM} program)
+string(REGEX MATCH "```cpp\n([^`]*)```" found "${readme}")
+if(NOT found)
+  message(FATAL_ERROR "${README} has no C++ example")
+endif()
+string(REPLACE ";" "\\;" code "${CMAKE_MATCH_1}")
+string(REPLACE "\n" ";" lines "${code}")
+foreach(line IN LISTS lines)
+  string(STRIP "${line}" line)
+  string(FIND "${program}" "${line}" at)
+  if(at EQUAL -1)
+    message(FATAL_ERROR "${README}: '${line}' is not in ${PROGRAM}")
+  endif()
+endforeach()
