@@ -11,6 +11,12 @@ Model makeModel(BundledModel which, uint32_t faces) {
     switch (which) {
     case BundledModel::creature:
         return models::makeCreature(faces);
+    case BundledModel::shaft:
+        return models::makeShaft(faces);
+    case BundledModel::terrain:
+        return models::makeTerrain(faces);
+    case BundledModel::temple:
+        return models::makeTemple(faces);
     }
     return {};
 }

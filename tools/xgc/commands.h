@@ -12,4 +12,6 @@ namespace xgc::tool {
 
 using Run = std::function<bake::Status()>;
 
+void addModel(CLI::App& app, Run& run);
+
 } // namespace xgc::tool

@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
     CLI::App app{"xgc: level of detail for the parts inside a mesh"};
     app.require_subcommand(1);
     xgc::tool::Run run;
+    xgc::tool::addModel(app, run);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

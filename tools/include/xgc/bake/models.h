@@ -7,6 +7,9 @@ namespace xgc::bake {
 /// The bundled models, made by code: the same bits on any machine and compiler.
 enum class BundledModel {
     creature, ///< a small dragon, blended implicit surfaces: closed manifold, smooth, vertex colours
+    shaft,    ///< a turned machine part with grooves, keyway, hexagon and splines: closed, hard creases
+    terrain,  ///< an open height field with mountains and a river: uvs, vertex colours
+    temple,   ///< many pieces by name, five materials, uv seams; closed stones, open roof and ground
 };
 
 /// Faces that can be asked for.
