@@ -1,5 +1,5 @@
 #include <import/assimp_files.h>
-#include <import/header_counts.h>
+#include <import/completeness.h>
 #include <import/model_builder.h>
 #include <import/obj_text.h>
 #include <import/placement.h>
@@ -211,7 +211,7 @@ Status readWithAssimp(const Source& source, const ImportLimits& limits, Model& o
         return badInput(fmt::format("{}: no reader for the extension \"{}\"; give glTF, GLB, OBJ, PLY, OFF, STL or "
                                     "another format that Assimp reads",
                                     source.name, source.extension));
-    if (Status s = checkHeaderCounts(source); !s.ok()) return s;
+    if (Status s = checkComplete(source); !s.ok()) return s;
 
     ObjText obj;
     Source given = source;
