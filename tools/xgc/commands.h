@@ -13,5 +13,8 @@ namespace xgc::tool {
 using Run = std::function<bake::Status()>;
 
 void addModel(CLI::App& app, Run& run);
+void addBake(CLI::App& app, Run& run);
+void addInspect(CLI::App& app, Run& run);
+void addVerify(CLI::App& app, Run& run);
 
 } // namespace xgc::tool

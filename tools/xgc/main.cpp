@@ -18,6 +18,9 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     xgc::tool::Run run;
     xgc::tool::addModel(app, run);
+    xgc::tool::addBake(app, run);
+    xgc::tool::addInspect(app, run);
+    xgc::tool::addVerify(app, run);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -1,0 +1,158 @@
+#include "meshes/builders.h"
+
+#include <xgc/asset.h>
+#include <xgc/bake/bake.h>
+#include <xgc/bake/import.h>
+#include <xgc/bake/verify.h>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+#include <tbb/global_control.h>
+
+#include <fstream>
+#include <unistd.h>
+
+using namespace xgc;
+using namespace xgc::bake;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A folder of its own that goes with the test.
+struct Folder {
+    fs::path path = fs::temp_directory_path() / ("xgc_test_bake_" + std::to_string(getpid()));
+    Folder() { fs::create_directories(path); }
+    ~Folder() { fs::remove_all(path); }
+};
+
+void writeOff(const Model& model, const fs::path& file) {
+    std::ofstream out(file);
+    out << "OFF\n" << model.positions.size() << ' ' << model.triangles.size() << " 0\n";
+    out.precision(9);
+    for (const glm::vec3& p : model.positions) out << p.x << ' ' << p.y << ' ' << p.z << '\n';
+    for (const glm::uvec3& t : model.triangles) out << "3 " << t.x << ' ' << t.y << ' ' << t.z << '\n';
+}
+
+/// Two spheres that touch nowhere.
+Model twoSpheres() {
+    Model model = test::sphere(8);
+    const Model other = test::sphere(6);
+    const auto offset = uint32_t(model.positions.size());
+    for (const glm::vec3& p : other.positions) model.positions.push_back(p + glm::vec3(3, 0, 0));
+    std::vector<glm::uvec3> triangles = model.triangles;
+    for (const glm::uvec3& t : other.triangles) triangles.push_back(t + offset);
+    return test::modelOf(model.positions, triangles);
+}
+
+std::string contents(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+BakeOptions optionsFor(const Folder& folder, const char* output) {
+    BakeOptions options;
+    options.input = folder.path / "in.off";
+    options.output = folder.path / output;
+    return options;
+}
+
+} // namespace
+
+TEST_CASE("a bake of a closed mesh keeps every promise, whatever gives the parts") {
+    const Folder folder;
+    writeOff(twoSpheres(), folder.path / "in.off");
+    const uint32_t faces = uint32_t(twoSpheres().triangles.size());
+    {
+        std::ofstream labels(folder.path / "in.seg");
+        for (uint32_t f = 0; f < faces; ++f) labels << f % 3 << '\n';
+    }
+    for (const PartSource source :
+         {PartSource::thesis, PartSource::none, PartSource::material, PartSource::component, PartSource::labels}) {
+        BakeOptions options = optionsFor(folder, "out.xgc");
+        options.parts = source;
+        options.labels = folder.path / "in.seg";
+        BakeReport report;
+        const bake::Status status = bake::bake(options, report);
+        REQUIRE_MESSAGE(status.ok(), status.message);
+        CHECK(report.faces == faces);
+        if (source == PartSource::component) CHECK(report.parts == 2);
+        if (source == PartSource::labels) CHECK(report.parts == 3);
+        if (source == PartSource::none || source == PartSource::material) CHECK(report.parts == 1);
+        AlignedBytes bytes;
+        REQUIRE(readFile(options.output, bytes).ok());
+        AssetView asset;
+        REQUIRE(openAll(bytes.span(), asset).ok());
+        Model model;
+        REQUIRE(importModel(options.input, model).ok());
+        Mesh mesh;
+        WeldReport weldReport;
+        REQUIRE(weld(model, {}, mesh, weldReport).ok());
+        VerifyReport verified;
+        verifySource(asset, mesh, verified);
+        VerifyOptions verifyOptions;
+        verifyOptions.states = 20;
+        verifyOptions.errorStates = 8;
+        verifyOptions.errorSamples = 2000;
+        verifyAsset(asset, verifyOptions, verified);
+        CHECK(verified.sourceMismatches == 0);
+        CHECK(verified.ok());
+    }
+}
+
+TEST_CASE("the same input gives the same bytes at any number of threads") {
+    const Folder folder;
+    writeOff(twoSpheres(), folder.path / "in.off");
+    BakeReport report;
+    REQUIRE(bake::bake(optionsFor(folder, "a.xgc"), report).ok());
+    {
+        const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+        REQUIRE(bake::bake(optionsFor(folder, "b.xgc"), report).ok());
+    }
+    CHECK(!contents(folder.path / "a.xgc").empty());
+    CHECK(contents(folder.path / "a.xgc") == contents(folder.path / "b.xgc"));
+}
+
+TEST_CASE("a bake that is cancelled or fails leaves the target as it was") {
+    const Folder folder;
+    writeOff(twoSpheres(), folder.path / "in.off");
+    std::ofstream(folder.path / "out.xgc") << "before";
+    std::atomic<bool> cancelled = true;
+    BakeOptions options = optionsFor(folder, "out.xgc");
+    options.cancelled = &cancelled;
+    BakeReport report;
+    const bake::Status stopped = bake::bake(options, report);
+    CHECK(stopped.outcome == Outcome::system);
+    CHECK(stopped.message.find("untouched") != std::string::npos);
+    CHECK(contents(folder.path / "out.xgc") == "before");
+
+    options = optionsFor(folder, "out.xgc");
+    options.parts = PartSource::labels;
+    options.labels = folder.path / "missing.seg";
+    const bake::Status refused = bake::bake(options, report);
+    CHECK(refused.outcome == Outcome::badInput);
+    CHECK(refused.message.find("missing.seg") != std::string::npos);
+    CHECK(contents(folder.path / "out.xgc") == "before");
+    CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator{}) == 2);
+}
+
+TEST_CASE("the report holds every stage, level and verdict") {
+    const Folder folder;
+    Model open = test::grid(8);
+    open.triangles.push_back(open.triangles[0]); // a duplicate
+    writeOff(open, folder.path / "in.off");
+    BakeOptions options = optionsFor(folder, "out.xgc");
+    options.parts = PartSource::none;
+    BakeReport report;
+    REQUIRE(bake::bake(options, report).ok());
+    CHECK(report.weld.duplicateFaces == 1);
+    const auto json = nlohmann::json::parse(reportJson(options, report));
+    for (const char* key : {"input", "stages", "faces", "parts", "patches", "levels", "verdicts"})
+        CHECK(json.contains(key));
+    CHECK(json["stages"].size() == 7);
+    CHECK(json["faces"] == 128);
+    CHECK(json["levels"].size() == report.levels.size());
+    CHECK(json["levels"][0]["error"] == 0.0);
+    bool named = false;
+    for (const auto& verdict : json["verdicts"]) named |= verdict["what"].get<std::string>().starts_with("1 duplicate");
+    CHECK(named);
+}

@@ -1,0 +1,134 @@
+#include "commands.h"
+#include "progress.h"
+
+#include <xgc/bake/bake.h>
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <csignal>
+#include <memory>
+#include <optional>
+
+namespace xgc::tool {
+namespace {
+
+std::atomic<bool> interrupted{false};
+
+struct BakeArguments {
+    std::string input, output, report;
+    std::string preset = "thesis", parts = "thesis", curvature = "trace";
+    uint32_t jobs = 0;
+    bool quiet = false;
+    bake::BakeOptions options;
+};
+
+bake::Status parseParts(const BakeArguments& arguments, bake::BakeOptions& options) {
+    using bake::PartSource;
+    if (arguments.parts == "thesis")
+        options.parts = PartSource::thesis;
+    else if (arguments.parts == "none")
+        options.parts = PartSource::none;
+    else if (arguments.parts == "material")
+        options.parts = PartSource::material;
+    else if (arguments.parts == "component")
+        options.parts = PartSource::component;
+    else if (arguments.parts == "perceptual" || arguments.parts == "default") {
+        return bake::usageError(fmt::format("--parts {}: this version does not have it; use thesis, none, material, "
+                                            "component or a .seg file",
+                                            arguments.parts));
+    } else if (std::filesystem::path(arguments.parts).extension() == ".seg") {
+        options.parts = PartSource::labels;
+        options.labels = arguments.parts;
+    } else {
+        return bake::usageError(
+            fmt::format("--parts {}: expected thesis, none, material, component or a .seg file", arguments.parts));
+    }
+    return {};
+}
+
+bake::Status parse(const BakeArguments& arguments, bake::BakeOptions& options) {
+    if (arguments.preset != "thesis") {
+        return bake::usageError(fmt::format("--preset {}: this version has the preset thesis only", arguments.preset));
+    }
+    if (bake::Status s = parseParts(arguments, options); !s.ok()) return s;
+    options.hierarchy.curvature = arguments.curvature == "sum"         ? bake::CurvatureNorm::sum
+                                  : arguments.curvature == "frobenius" ? bake::CurvatureNorm::frobenius
+                                                                       : bake::CurvatureNorm::trace;
+    options.input = arguments.input;
+    options.output = arguments.output;
+    if (options.output.extension() != ".xgc") {
+        return bake::usageError(fmt::format("{}: the output must end in .xgc", arguments.output));
+    }
+    const std::filesystem::path folder = options.output.has_parent_path() ? options.output.parent_path() : ".";
+    std::error_code error;
+    if (!std::filesystem::is_directory(folder, error)) {
+        return bake::badInput(fmt::format("{}: no such folder: make it first", folder.string()));
+    }
+    if (std::filesystem::is_directory(options.output, error)) {
+        return bake::badInput(fmt::format("{}: is a folder: name a file", arguments.output));
+    }
+    return {};
+}
+
+void printSummary(const bake::BakeOptions& options, const bake::BakeReport& report) {
+    double seconds = 0;
+    for (const bake::StageReport& s : report.stages) seconds += s.seconds;
+    fmt::print(stderr, "{}: {} faces, {} parts, {} patches, {} levels, {} bytes ({:.1f} a face), {:.2f} s\n",
+               options.output.string(), report.faces, report.parts, report.patches, report.levels.size(),
+               report.fileBytes, double(report.fileBytes) / std::max(1u, report.faces), seconds);
+    for (const bake::Verdict& v : report.verdicts) {
+        const char* severity = v.severity == bake::Severity::warning ? "warning" : "note";
+        fmt::print(stderr, "{}: {}: {} ({})\n", severity, v.where, v.what, v.remedy);
+    }
+}
+
+bake::Status runBake(BakeArguments& arguments) {
+    bake::BakeOptions& options = arguments.options;
+    if (bake::Status s = parse(arguments, options); !s.ok()) return s;
+    std::optional<tbb::global_control> limit;
+    if (arguments.jobs > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, arguments.jobs);
+    std::signal(SIGINT, [](int) { interrupted = true; });
+    std::signal(SIGTERM, [](int) { interrupted = true; });
+    options.cancelled = &interrupted;
+    bake::BakeReport report;
+    bake::Status status;
+    {
+        Progress progress(arguments.quiet);
+        options.progress = [&](const char* stage, double fraction) { progress.show(stage, fraction); };
+        status = bake::bake(options, report);
+    }
+    if (!status.ok()) return status;
+    if (!arguments.quiet) printSummary(options, report);
+    if (arguments.report.empty()) return status;
+    const std::string json = bake::reportJson(options, report);
+    return bake::writeFileAtomically(arguments.report, std::as_bytes(std::span(json)));
+}
+
+} // namespace
+
+void addBake(CLI::App& app, Run& run) {
+    auto arguments = std::make_shared<BakeArguments>();
+    CLI::App* bake = app.add_subcommand("bake", "Bake a model file into one .xgc asset");
+    bake->add_option("IN", arguments->input, "Model: glTF, GLB, OBJ, PLY, OFF, STL, ...")->required();
+    bake->add_option("-o,--output", arguments->output, "The asset to write, ending in .xgc")->required();
+    bake->add_option("--preset", arguments->preset, "Hierarchy: thesis")->capture_default_str();
+    bake->add_option("--parts", arguments->parts, "Parts: thesis, none, material, component or a FILE.seg")
+        ->capture_default_str();
+    bake->add_option("--parts-count", arguments->options.segment.partsCount,
+                     "Parts wanted of --parts thesis; 0: automatic")
+        ->capture_default_str();
+    bake->add_option("--curvature", arguments->curvature, "Norm that locks creases and apices")
+        ->check(CLI::IsMember({"trace", "sum", "frobenius"}))
+        ->capture_default_str();
+    bake->add_option("--weld", arguments->options.weld.tolerance, "Grid spacing of the weld, mesh units; 0: exact")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    bake->add_option("--report", arguments->report, "Write a report as JSON");
+    bake->add_option("--jobs", arguments->jobs, "Threads; 0: all cores")->capture_default_str();
+    bake->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
+    bake->footer("Example: xgc bake creature.glb -o creature.xgc --report creature.json");
+    bake->callback([arguments, &run] { run = [arguments] { return runBake(*arguments); }; });
+}
+
+} // namespace xgc::tool

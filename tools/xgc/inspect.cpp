@@ -1,0 +1,178 @@
+#include "commands.h"
+#include "open_asset.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+#include <memory>
+
+namespace xgc::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* streamName(format::StreamKind kind) {
+    using format::StreamKind;
+    switch (kind) {
+    case StreamKind::position:
+        return "position";
+    case StreamKind::normal:
+        return "normal";
+    case StreamKind::tangent:
+        return "tangent";
+    case StreamKind::uv:
+        return "uv";
+    case StreamKind::color:
+        return "color";
+    case StreamKind::joints:
+        return "joints";
+    case StreamKind::weights:
+        return "weights";
+    case StreamKind::collapseLevel:
+        return "collapseLevel";
+    case StreamKind::birthLevel:
+        return "birthLevel";
+    case StreamKind::parentNarrow:
+        return "parentNarrow";
+    case StreamKind::parentWide:
+        return "parentWide";
+    case StreamKind::cornerNarrow:
+        return "cornerNarrow";
+    case StreamKind::cornerWide:
+        return "cornerWide";
+    case StreamKind::death:
+        return "death";
+    }
+    return "unknown";
+}
+
+/// Bytes of the installed image: the tables and the decoded pages.
+uint64_t memoryBytes(const AssetView& asset) {
+    uint64_t bytes = reinterpret_cast<const format::FileHeader*>(asset.bytes.data())->tableBytes;
+    for (const format::PageRecord& page : asset.pages) bytes += page.rawBytes;
+    return bytes;
+}
+
+/// Bytes of the plain mesh: float3 positions of level 0's vertices and u32 indices.
+uint64_t baseBytes(const AssetView& asset) {
+    return 12ull * asset.record->baseVertexCount + 12ull * asset.record->faceCount;
+}
+
+/// Bytes of positions and topology with all levels: what stands against the plain mesh.
+uint64_t geometryBytes(const AssetView& asset) {
+    uint64_t bytes = memoryBytes(asset);
+    for (const format::StreamRecord& s : asset.streams) {
+        const bool isAttribute = s.kind >= format::StreamKind::normal && s.kind <= format::StreamKind::weights;
+        if (isAttribute) bytes -= s.rawBytes;
+    }
+    return bytes;
+}
+
+Json partsJson(const AssetView& asset) {
+    Json parts = Json::array();
+    for (uint32_t p = 0; p < asset.parts.size(); ++p) {
+        const format::PartRecord& part = asset.parts[p];
+        Json neighbours = Json::array();
+        for (uint32_t n = 0; n < part.neighbourCount; ++n) {
+            neighbours.push_back(asset.partNeighbours[part.firstNeighbour + n]);
+        }
+        parts.push_back({{"id", p},
+                         {"name", std::string(asset.text(part.name))},
+                         {"stableId", fmt::format("{:016x}", part.stableId)},
+                         {"faces", part.faceCount},
+                         {"firstPatch", part.firstPatch},
+                         {"patches", part.patchCount},
+                         {"area", part.area},
+                         {"centroid", {part.centroid[0], part.centroid[1], part.centroid[2]}},
+                         {"neighbours", neighbours}});
+    }
+    return parts;
+}
+
+Json inspectJson(const AssetView& asset) {
+    const format::AssetRecord& record = *asset.record;
+    Json json;
+    json["faces"] = record.faceCount;
+    json["vertices"] = record.baseVertexCount;
+    json["positions"] = record.positionCount;
+    json["madeVertices"] = record.vertexCount - record.baseVertexCount;
+    json["parts"] = record.partCount;
+    json["patches"] = record.patchCount;
+    json["domains"] = record.domainCount;
+    json["materials"] = record.materialCount;
+    json["closed"] = (record.flags & format::kInputIsClosed) != 0;
+    json["errorIsEstimate"] = (record.flags & format::kErrorIsEstimate) != 0;
+    json["bounds"] = {{"min", record.boundsMin},
+                      {"max", record.boundsMax},
+                      {"center", record.sphereCenter},
+                      {"radius", record.sphereRadius}};
+    json["levels"] = Json::array();
+    for (const format::LevelRecord& level : asset.levels) {
+        json["levels"].push_back({{"faces", level.faceCount}, {"error", level.maxError}});
+    }
+    json["bytes"] = {{"file", asset.bytes.size()},
+                     {"memory", memoryBytes(asset)},
+                     {"geometry", geometryBytes(asset)},
+                     {"base", baseBytes(asset)}};
+    json["streams"] = Json::array();
+    for (const format::StreamRecord& s : asset.streams) {
+        json["streams"].push_back(
+            {{"name", streamName(s.kind)}, {"set", s.set}, {"count", s.count}, {"bytes", s.rawBytes}});
+    }
+    json["partList"] = partsJson(asset);
+    json["provenance"] = Json::parse(asset.provenance, nullptr, false);
+    if (json["provenance"].is_discarded()) json["provenance"] = nullptr;
+    return json;
+}
+
+void printText(const std::string& file, const AssetView& asset) {
+    const format::AssetRecord& record = *asset.record;
+    const double faces = std::max(1u, record.faceCount);
+    fmt::print("{}: {} faces, {} vertices ({} positions, {} made), {} parts, {} patches, {}\n", file, record.faceCount,
+               record.baseVertexCount, record.positionCount, record.vertexCount - record.baseVertexCount,
+               record.partCount, record.patchCount, record.flags & format::kInputIsClosed ? "closed" : "open");
+    fmt::print("bytes a face: file {:.1f}, memory {:.1f}, positions and topology {:.1f}, plain mesh {:.1f}\n",
+               double(asset.bytes.size()) / faces, double(memoryBytes(asset)) / faces,
+               double(geometryBytes(asset)) / faces, double(baseBytes(asset)) / faces);
+    fmt::print("{:>6} {:>12} {:>8} {:>12}\n", "level", "faces", "%", "error");
+    for (uint32_t l = 0; l < asset.levelCount(); ++l) {
+        fmt::print("{:>6} {:>12} {:>8.2f} {:>12.4g}\n", l, asset.levels[l].faceCount,
+                   100 * asset.levels[l].faceCount / faces, asset.levels[l].maxError);
+    }
+    if (record.flags & format::kErrorIsEstimate) fmt::print("errors are estimates: largest sampled deviation x 1.3\n");
+    fmt::print("{:>6} {:>10} {:>8} {:>10}  {}\n", "part", "faces", "patches", "neighbours", "name");
+    for (uint32_t p = 0; p < record.partCount; ++p) {
+        const format::PartRecord& part = asset.parts[p];
+        fmt::print("{:>6} {:>10} {:>8} {:>10}  {}\n", p, part.faceCount, part.patchCount, part.neighbourCount,
+                   asset.text(part.name));
+    }
+}
+
+bake::Status runInspect(const std::string& file, bool json) {
+    OpenAsset asset;
+    if (bake::Status s = openAsset(file, asset); !s.ok()) return s;
+    if (json)
+        fmt::print("{}\n", inspectJson(asset.view).dump(2, ' ', false, Json::error_handler_t::replace));
+    else
+        printText(file, asset.view);
+    return {};
+}
+
+} // namespace
+
+void addInspect(CLI::App& app, Run& run) {
+    struct Arguments {
+        std::string file;
+        bool json = false;
+    };
+    auto arguments = std::make_shared<Arguments>();
+    CLI::App* inspect = app.add_subcommand("inspect", "Print what an asset holds: sizes, levels, parts");
+    inspect->add_option("FILE", arguments->file, "An .xgc file")->required();
+    inspect->add_flag("--json", arguments->json, "Print JSON (documented in tools/README.md)");
+    inspect->footer("Example: xgc inspect creature.xgc");
+    inspect->callback(
+        [arguments, &run] { run = [arguments] { return runInspect(arguments->file, arguments->json); }; });
+}
+
+} // namespace xgc::tool
