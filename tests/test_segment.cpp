@@ -224,6 +224,30 @@ TEST_CASE(".seg: what is wrong is refused with its line, and nothing is changed"
     }
 }
 
+TEST_CASE(".seg files: written, read back, and refused by name where they are none") {
+    const std::filesystem::path dir = std::filesystem::path(XGC_BINARY_DIR) / "test_segment";
+    std::filesystem::create_directories(dir);
+    const std::vector<uint32_t> labels = {3, 0, 4294967294u};
+    REQUIRE(writeSegFile(dir / "a.seg", labels).ok());
+    std::vector<uint32_t> back;
+    REQUIRE(readSegFile(dir / "a.seg", 3, back).ok());
+    CHECK(back == labels);
+
+    const auto refusal = [&](const std::filesystem::path& file, uint32_t faces) {
+        const Status status = readSegFile(file, faces, back);
+        CHECK(status.outcome == Outcome::badInput);
+        CHECK(back == labels);
+        CHECK(status.message.starts_with(file.string()));
+        return status.message;
+    };
+    CHECK(refusal(dir / "none.seg", 3).find("no such file") != std::string::npos);
+    CHECK(refusal(dir, 3).find("is a directory") != std::string::npos);
+    CHECK(refusal(dir / "a.seg", 4).find("3 lines for a model of 4 faces") != std::string::npos);
+    std::ofstream(dir / "huge.seg") << std::string(100000, '\n');
+    CHECK(refusal(dir / "huge.seg", 3).find("far too long") != std::string::npos);
+    CHECK_FALSE(writeSegFile(dir / "no/such/folder/a.seg", labels).ok());
+}
+
 TEST_CASE("a wholly convex body is one part") {
     CHECK(thesisParts(welded(test::cube(1))).partCount() == 1);
     CHECK(thesisParts(welded(test::cube(5))).partCount() == 1);
@@ -390,6 +414,20 @@ TEST_CASE("edges of more than two faces are closed, and regions still meet there
     ThesisSegmentOptions options;
     options.partsCount = 1;
     CHECK(thesisParts(w, options).partCount() == 1);
+}
+
+TEST_CASE("the report holds what the trace saw") {
+    const Welded w = welded(roughSphere(0.01f));
+    ThesisSegmentTrace trace;
+    const Segmentation parts = thesisParts(w, {}, &trace);
+    const std::string json = thesisReportJson("rough \"sphere\".off", w.mesh, {}, trace, parts);
+    CHECK(json.find("\"input\": \"rough \\\"sphere\\\".off\"") != std::string::npos);
+    CHECK(json.find("\"noisy\": true") != std::string::npos);
+    CHECK(json.find(fmt::format("\"filledRegions\": {},", trace.filledCount)) != std::string::npos);
+    CHECK(json.find(fmt::format("\"equationCount\": {},", trace.equationCount)) != std::string::npos);
+    for (const char* key : {"triangleTypes", "firstHistogram", "histogram", "smoothingRounds", "areaPercent"}) {
+        CHECK(json.find(fmt::format("\"{}\": ", key)) != std::string::npos);
+    }
 }
 
 TEST_CASE("islands have no one to merge with and stay") {

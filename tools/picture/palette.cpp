@@ -21,7 +21,11 @@ float encode(float x) {
 
 float decode(float x) {
     x = glm::clamp(x, 0.0f, 1.0f);
-    return x * (x * (x * 0.305306011f + 0.682171111f) + 0.012522878f);
+    if (x <= 0.04045f) return x / 12.92f;
+    const float t = (x + 0.055f) / 1.055f, t2 = t * t;
+    float root = 1; // the fifth root of t^2, by Newton's steps from above
+    for (int i = 0; i < 12; ++i) root -= (root - t2 / (root * root * root * root)) * 0.2f;
+    return t2 * root;
 }
 
 } // namespace

@@ -16,5 +16,6 @@ void addModel(CLI::App& app, Run& run);
 void addBake(CLI::App& app, Run& run);
 void addInspect(CLI::App& app, Run& run);
 void addVerify(CLI::App& app, Run& run);
+void addSegment(CLI::App& app, Run& run);
 
 } // namespace xgc::tool

@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
     xgc::tool::addBake(app, run);
     xgc::tool::addInspect(app, run);
     xgc::tool::addVerify(app, run);
+    xgc::tool::addSegment(app, run);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -2,7 +2,9 @@
 
 #include <xgc/bake/image.h>
 #include <xgc/bake/mesh.h>
+#include <xgc/bake/segment.h>
 
+#include <array>
 #include <span>
 
 namespace xgc::bake {
@@ -11,8 +13,8 @@ namespace xgc::bake {
 /// and darker tones. The same in every picture of the project.
 glm::vec3 partColor(uint32_t part);
 
-/// sRGB encoding of linear values in [0,1] and back, by square roots and a polynomial: within a step of 8 bits of the
-/// standard's curves, and the same on any machine.
+/// sRGB encoding of linear values in [0,1] and back, by square roots and Newton's steps: within a step of 8 bits
+/// of the standard's curves, and the same on any machine.
 glm::vec3 encodeSrgb(glm::vec3 linear);
 glm::vec3 decodeSrgb(glm::vec3 srgb);
 
@@ -41,5 +43,14 @@ struct PictureOptions {
 /// any machine. One thread; memory: 10 bytes a sample.
 Image drawPicture(const Mesh& mesh, const Topology& topology, std::span<const glm::vec3> faceColors,
                   std::span<const PictureLine> lines, const PictureOptions& options);
+
+/// A face's colour by its part.
+std::vector<glm::vec3> partColors(const Segmentation& parts);
+
+/// The thesis's figure 3.4 of any mesh: edges by kind (convex blue, concave red, flat grey) over grey triangles; the
+/// regions as they were filled; the parts after merging. `options.lineWidth` is the widest that an edge gets; it is
+/// thinner where the mesh is finer.
+std::array<Image, 3> drawThesisStages(const Mesh& mesh, const Topology& topology, const ThesisSegmentTrace& trace,
+                                      const Segmentation& parts, const PictureOptions& options);
 
 } // namespace xgc::bake

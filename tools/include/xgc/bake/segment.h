@@ -18,16 +18,28 @@ struct Segmentation {
     uint32_t partCount() const { return uint32_t(partNames.size()); }
 };
 
-/// Constants of the thesis's segmentation (chapter 3) and the choices that its text leaves open.
+/// Constants of the thesis's segmentation (chapter 3) and the choices that its text leaves open. Fixed choices:
+/// - Faces are first wound alike: nearly closed components outwards, others as most of their faces are.
+/// - Borders, edges of more than two faces and those across which winding cannot agree are closed: no region crosses
+///   them. Regions still count as neighbours there when merging.
+/// - N1 and P1 belong to the edge's first face. A face without area takes its plane from the one across its longest
+///   edge.
+/// - Saliences come first, then recesses, then saliences of what is left: so a wholly convex body is one part. The
+///   order of seeds does not matter: regions of a kind are connected components.
+/// - Merging takes the smallest region at its original area; equal areas and equal boundaries go to the lower region.
+///   An island stays, so a mesh has at least as many parts as components.
 struct ThesisSegmentOptions {
     /// An edge is flat where |D| <= flatTolerance * |P1 P2| (point membership test).
     float flatTolerance = 6e-3f;
-    /// Seed saliences also from triangles that have a convex edge but are no boundary triangles.
+    /// Seed saliences also from triangles that have a convex edge but are no boundary triangles (one convex and one
+    /// concave edge): or rims of triangles with a single concave edge fall to the recesses.
     bool seedFromConvexEdges = true;
-    /// The mesh is noisy where the bin [0,1[ holds at least this many times the largest other bin.
+    /// The mesh is noisy where the bin [0,1[ of the area histogram holds at least this many times the largest other.
     float noiseRatio = 2;
-    uint32_t smoothingRounds = 200; ///< at most
-    /// Regions wanted after merging; 0: Eq. 3.1 (regions of 1 % of the area or more, at least 2).
+    /// Rounds of uniform Laplacian smoothing while noisy, at most: it need not end by itself.
+    uint32_t smoothingRounds = 200;
+    /// Parts wanted; 0: Eq. 3.1, with a_i the mean area of a bin's regions: the regions of 1 % of the original area or
+    /// more, at least 2 where the mesh has them.
     uint32_t partsCount = 0;
     bool merge = true; ///< false stops after filling
 };
@@ -50,6 +62,10 @@ struct ThesisSegmentTrace {
 
 Segmentation segmentThesis(const Mesh& mesh, const Topology& topology, const ThesisSegmentOptions& options,
                            ThesisSegmentTrace* trace = nullptr);
+
+/// What a run of segmentThesis did, as JSON: documented in tools/README.md. `input` names the model.
+std::string thesisReportJson(const std::string& input, const Mesh& mesh, const ThesisSegmentOptions& options,
+                             const ThesisSegmentTrace& trace, const Segmentation& parts);
 
 /// One part, "all"; a part each material, named after it (made unique); a part each edge-connected component,
 /// "component-0" the largest.

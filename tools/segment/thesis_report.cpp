@@ -1,0 +1,54 @@
+#include "part_order.h"
+
+#include <nlohmann/json.hpp>
+
+namespace xgc::bake {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json partsJson(const Mesh& mesh, const Segmentation& parts) {
+    const std::vector<double> areas = faceAreas(mesh);
+    std::vector<uint32_t> faces(parts.partCount(), 0);
+    std::vector<double> area(parts.partCount(), 0.0);
+    double total = 0;
+    for (uint32_t f = 0; f < mesh.faceCount(); ++f) {
+        ++faces[parts.facePart[f]];
+        area[parts.facePart[f]] += areas[f];
+        total += areas[f];
+    }
+    Json json = Json::array();
+    for (uint32_t p = 0; p < parts.partCount(); ++p) {
+        json.push_back({{"name", parts.partNames[p]},
+                        {"faces", faces[p]},
+                        {"areaPercent", total > 0 ? 100 * (area[p] / total) : 0.0}});
+    }
+    return json;
+}
+
+} // namespace
+
+std::string thesisReportJson(const std::string& input, const Mesh& mesh, const ThesisSegmentOptions& options,
+                             const ThesisSegmentTrace& trace, const Segmentation& parts) {
+    Json json;
+    json["input"] = input;
+    json["preset"] = "thesis";
+    json["faces"] = mesh.faceCount();
+    json["options"] = {{"flatTolerance", options.flatTolerance}, {"seedFromConvexEdges", options.seedFromConvexEdges},
+                       {"noiseRatio", options.noiseRatio},       {"smoothingRounds", options.smoothingRounds},
+                       {"partsCount", options.partsCount},       {"merge", options.merge}};
+    json["triangleTypeNames"] = {"+3", "+2", "+1", "flat", "-3", "-2", "-1", "+2-1", "+1-2", "+1-1"};
+    json["triangleTypes"] = trace.triangleTypes;
+    json["noisy"] = trace.noisy;
+    json["noisyAfterSmoothing"] = trace.noisyAfterSmoothing;
+    json["smoothingRounds"] = trace.smoothingRounds;
+    json["firstHistogram"] = trace.firstHistogram;
+    json["histogram"] = trace.histogram;
+    json["filledRegions"] = trace.filledCount;
+    json["equationCount"] = trace.equationCount;
+    json["parts"] = partsJson(mesh, parts);
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+} // namespace xgc::bake
