@@ -395,9 +395,9 @@ TEST_CASE("what does not fit the configuration is refused with the setting's nam
         return std::pair(std::string(status.message), status.element);
     };
     const auto says = [&](const xgc::DrawListConfig& config, const char* setting, uint64_t needed) {
-        const auto [message, element] = refusal(config);
-        CHECK_MESSAGE(message.find(setting) != std::string::npos, message);
-        CHECK(element == needed);
+        const std::pair<std::string, uint64_t> said = refusal(config);
+        CHECK_MESSAGE(said.first.find(setting) != std::string::npos, said.first);
+        CHECK(said.second == needed);
     };
     const xgc::AssetView& asset = assets.large.view;
     CHECK(refusal({}).first == "ok");
