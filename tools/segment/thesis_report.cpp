@@ -1,12 +1,20 @@
 #include "part_order.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include <cstdlib>
 
 namespace xgc::bake {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// The double that prints as the float does: 0.006, not 0.006000000052154064.
+double asPrinted(float value) {
+    return std::strtod(fmt::format("{}", value).c_str(), nullptr);
+}
 
 Json partsJson(const Mesh& mesh, const Segmentation& parts) {
     const std::vector<double> areas = faceAreas(mesh);
@@ -35,9 +43,12 @@ std::string thesisReportJson(const std::string& input, const Mesh& mesh, const T
     json["input"] = input;
     json["preset"] = "thesis";
     json["faces"] = mesh.faceCount();
-    json["options"] = {{"flatTolerance", options.flatTolerance}, {"seedFromConvexEdges", options.seedFromConvexEdges},
-                       {"noiseRatio", options.noiseRatio},       {"smoothingRounds", options.smoothingRounds},
-                       {"partsCount", options.partsCount},       {"merge", options.merge}};
+    json["options"] = {{"flatTolerance", asPrinted(options.flatTolerance)},
+                       {"seedFromConvexEdges", options.seedFromConvexEdges},
+                       {"noiseRatio", asPrinted(options.noiseRatio)},
+                       {"smoothingRounds", options.smoothingRounds},
+                       {"partsCount", options.partsCount},
+                       {"merge", options.merge}};
     json["triangleTypeNames"] = {"+3", "+2", "+1", "flat", "-3", "-2", "-1", "+2-1", "+1-2", "+1-1"};
     json["triangleTypes"] = trace.triangleTypes;
     json["noisy"] = trace.noisy;
