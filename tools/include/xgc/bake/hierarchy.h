@@ -21,7 +21,8 @@ struct Patch {
 /// Rules, checked by `checkHierarchy`:
 /// - a parent wedge's position has a collapse level at or above the child's, and a domain that includes it;
 /// - all wedges of a position have parents of one position;
-/// - within a face of any state, equal position means equal wedge;
+/// - a face that has a position twice in some state has a wedge twice: it can be told to be degenerate by either;
+/// - the mesh's positions and wedges come first, as they are, with birth level 0;
 /// - a made position has 0 < birthLevel <= its collapse level, and only children that collapse at or after
 ///   it is born.
 struct Hierarchy {
@@ -65,7 +66,8 @@ struct DrawnSurface {
 };
 DrawnSurface drawSurface(const Mesh& mesh, const Hierarchy& hierarchy, std::span<const uint8_t> levels);
 
-/// Checks the rules above; the message names the first element that breaks one.
+/// Checks the rules above, in time linear in the hierarchy; the message names the first element that breaks one.
+/// The rule on faces is tried where all shared domains are at one level and the face's patch at another.
 Status checkHierarchy(const Mesh& mesh, const Hierarchy& hierarchy);
 
 } // namespace xgc::bake
