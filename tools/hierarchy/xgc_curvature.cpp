@@ -40,20 +40,27 @@ double curvature(std::span<const glm::dvec3> normals, CurvatureNorm norm) {
 } // namespace
 
 double XgcMesh::curvatureOf(uint32_t vertex) const {
-    std::vector<uint32_t> faces;
+    CurvatureScratch scratch;
+    return curvatureOf(vertex, scratch);
+}
+
+double XgcMesh::curvatureOf(uint32_t vertex, CurvatureScratch& scratch) const {
+    scratch.faces.clear();
+    scratch.normals.clear();
     forUses(vertex, [&](uint32_t use) {
-        for (const uint32_t f : facesOf(use / 2)) faces.push_back(f);
+        for (const uint32_t f : facesOf(use / 2)) scratch.faces.push_back(f);
     });
-    std::sort(faces.begin(), faces.end());
-    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-    std::vector<glm::dvec3> normals;
-    for (const uint32_t f : faces) {
-        if (faces_[f].normal != glm::vec3(0)) normals.emplace_back(faces_[f].normal);
+    std::sort(scratch.faces.begin(), scratch.faces.end());
+    uint32_t last = kNone;
+    for (const uint32_t f : scratch.faces) {
+        if (f != last && faces_[f].normal != glm::vec3(0)) scratch.normals.emplace_back(faces_[f].normal);
+        last = f;
     }
-    return curvature(normals, options_.curvature);
+    return curvature(scratch.normals, options_.curvature);
 }
 
 void XgcMesh::measureCurvature(uint32_t segment) {
+    CurvatureScratch scratch;
     const uint32_t stamp = nextStamp();
     const auto level = uint8_t(segments_[segment].level());
     for (const uint32_t e : segments_[segment].edges) {
@@ -62,7 +69,7 @@ void XgcMesh::measureCurvature(uint32_t segment) {
             Vertex& vertex = vertices_[v];
             if (seen_[v] == stamp || vertex.boundary || vertex.sharpSince < level) continue;
             seen_[v] = stamp;
-            vertex.sharpSince = curvatureOf(v) >= double(options_.lockCurvature) ? level : kNeverSharp;
+            vertex.sharpSince = curvatureOf(v, scratch) >= double(options_.lockCurvature) ? level : kNeverSharp;
         }
     }
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <utility>
 
 // Construction and the small operations on the structure. Each edge has two uses, one at each end; the uses at a vertex
 // form a ring, so that an edge leaves a vertex and joins another in constant time:
@@ -165,8 +164,8 @@ std::span<const uint32_t> XgcMesh::facesOf(uint32_t edge) const {
     return {faces.data(), size_t(faces[0] != kNone) + size_t(faces[1] != kNone)};
 }
 
-std::span<uint32_t> XgcMesh::facesOf(uint32_t edge) {
-    const std::span<const uint32_t> faces = std::as_const(*this).facesOf(edge);
+std::span<uint32_t> XgcMesh::mutableFacesOf(uint32_t edge) {
+    const std::span<const uint32_t> faces = facesOf(edge);
     return {const_cast<uint32_t*>(faces.data()), faces.size()};
 }
 

@@ -228,7 +228,7 @@ uint32_t XgcMesh::collapse(const Collapse& c, uint32_t wedge, uint8_t level) {
         const uint32_t face = c.faces[side], lost = c.lostEdges[side], kept = c.keptEdges[side];
         const uint32_t beyond = otherFace(lost, face);
         std::ranges::replace(faces_[beyond].edges, lost, kept);
-        std::ranges::replace(facesOf(kept), face, beyond);
+        std::ranges::replace(mutableFacesOf(kept), face, beyond);
         faces_[face].ghost = true;
         hideEdge(lost);
     }
@@ -304,7 +304,7 @@ void XgcMesh::undo(uint32_t node) {
         }
         const uint32_t beyond = otherFace(lost, face);
         std::ranges::replace(faces_[beyond].edges, kept, lost);
-        std::ranges::replace(facesOf(kept), beyond, face);
+        std::ranges::replace(mutableFacesOf(kept), beyond, face);
         showEdge(lost);
     }
     vertices_[i].ghost = false;

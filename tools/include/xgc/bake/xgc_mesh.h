@@ -169,6 +169,10 @@ public:
 
 private:
     struct Collapse; ///< of one edge: what is around it
+    struct CurvatureScratch {
+        std::vector<uint32_t> faces;
+        std::vector<glm::dvec3> normals;
+    };
 
     uint32_t end(uint32_t use) const { return edges_[use / 2].ends[use & 1]; }
     uint32_t otherEnd(uint32_t use) const { return edges_[use / 2].ends[~use & 1]; }
@@ -199,7 +203,7 @@ private:
     void showEdge(uint32_t edge);
     void pushEnds(uint32_t edge, std::array<uint32_t, 2> ends, uint8_t level);
     void popEnds(uint32_t edge);
-    std::span<uint32_t> facesOf(uint32_t edge);
+    std::span<uint32_t> mutableFacesOf(uint32_t edge);
     uint32_t otherFace(uint32_t edge, uint32_t face) const;
     void updateNormal(uint32_t face);
     void replaceCorners(uint32_t vertex, uint32_t from, uint32_t wedge);
@@ -210,6 +214,7 @@ private:
     uint32_t nextStamp();
 
     void measureCurvature(uint32_t segment);
+    double curvatureOf(uint32_t vertex, CurvatureScratch& scratch) const;
     std::vector<uint32_t> edgesInOrder(uint32_t segment) const;
     bool isEligible(uint32_t edge, uint32_t stamp) const;
     Collapse describe(uint32_t edge) const;
