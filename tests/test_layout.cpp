@@ -1,13 +1,11 @@
-#include "meshes/builders.h"
-#include "meshes/toy_hierarchy.h"
+#include "meshes/toy_asset.h"
 
-#include <xgc/bake/asset_writer.h>
 #include <xgc/indices.h>
 
 #include <doctest/doctest.h>
 
 #include <array>
-#include <cstring>
+#include <set>
 
 using namespace xgc;
 using namespace xgc::bake;
@@ -15,44 +13,11 @@ using test::ToyOptions;
 
 namespace {
 
-Mesh weldedMesh(const Model& model) {
-    Mesh mesh;
-    WeldReport report;
-    const bake::Status s = weld(model, {}, mesh, report);
-    REQUIRE_MESSAGE(s.ok(), s.message);
-    return mesh;
-}
-
-/// A mesh, its hierarchy, and the asset that they became.
-struct Baked {
-    Mesh mesh;
-    Segmentation parts;
-    Hierarchy hierarchy;
-    AlignedBytes file;
-    AssetView asset;
-};
-
-AlignedBytes aligned(const std::vector<std::byte>& bytes) {
-    AlignedBytes copy;
-    copy.blocks.resize((bytes.size() + 63) / 64);
-    copy.size = bytes.size();
-    std::memcpy(copy.blocks.data(), bytes.data(), bytes.size());
-    return copy;
-}
+using Baked = test::ToyAsset;
 
 Baked bakeToy(const Model& model, uint32_t patches, const ToyOptions& options) {
-    Baked b;
-    b.mesh = weldedMesh(model);
-    b.parts = test::slabs(b.mesh, patches);
-    b.hierarchy = test::toyHierarchy(b.mesh, b.parts, options);
-    const bake::Status rules = checkHierarchy(b.mesh, b.hierarchy);
-    REQUIRE_MESSAGE(rules.ok(), rules.message);
-    std::vector<std::byte> bytes;
-    const bake::Status s = layOutAsset(b.mesh, b.parts, b.hierarchy, test::toyErrors(b.hierarchy), false, "{}", bytes);
-    REQUIRE_MESSAGE(s.ok(), s.message);
-    b.file = aligned(bytes);
-    const xgc::Status opened = openAll(b.file.span(), b.asset);
-    REQUIRE_MESSAGE(opened.ok(), opened.message);
+    Baked b = test::toyAsset(model, patches, options);
+    REQUIRE_MESSAGE(b.error.empty(), b.error);
     return b;
 }
 
@@ -158,4 +123,195 @@ TEST_CASE("random states of a larger asset draw what the hierarchy defines") {
         checkRandomStates(bakeToy(test::sphere(24), 9, options), 60);
         checkRandomStates(bakeToy(test::grid(40), 6, options), 60);
     }
+}
+
+TEST_CASE("indices wider than 16 bits draw the same") {
+    ToyOptions options;
+    options.levelCount = 3;
+    const Baked b = bakeToy(test::grid(260), 1, options);
+    CHECK((b.asset.patches[0].flags & format::kWideSlots) != 0);
+    CHECK(b.asset.parentsNarrow.empty());
+    checkAllStates(b);
+}
+
+TEST_CASE("patches of narrow and of wide slots stand side by side") {
+    ToyOptions options;
+    options.levelCount = 3;
+    Baked b;
+    WeldReport report;
+    REQUIRE(weld(test::grid(270), {}, b.mesh, report).ok());
+    b.parts = test::slabs(b.mesh, 20);
+    for (uint32_t& part : b.parts.facePart) part = part == 19 ? 1 : 0;
+    b.parts.partNames.resize(2);
+    b.hierarchy = test::toyHierarchy(b.mesh, b.parts, options);
+    const bake::Status s = layOutAsset(b.mesh, b.parts, b.hierarchy, test::toyErrors(b.hierarchy), false, "", b.bytes);
+    REQUIRE_MESSAGE(s.ok(), s.message);
+    b.file = test::aligned(b.bytes);
+    REQUIRE(openAll(b.file.span(), b.asset).ok());
+    CHECK(!b.asset.parentsNarrow.empty());
+    CHECK(!b.asset.parentsWide.empty());
+    checkAllStates(b);
+}
+
+TEST_CASE("locked boundaries leave no face to test") {
+    ToyOptions options;
+    options.lockBoundaries = true;
+    const Baked b = bakeToy(test::sphere(8), 5, options);
+    for (const format::PatchRecord& patch : b.asset.patches) CHECK(patch.boundaryFaceCount == 0);
+}
+
+TEST_CASE("uniform face counts of the levels are those that are drawn") {
+    for (const bool lock : {false, true}) {
+        ToyOptions options;
+        options.lockBoundaries = lock;
+        const Baked b = bakeToy(test::sphere(8), 5, options);
+        for (uint32_t level = 0; level < b.asset.levelCount(); ++level) {
+            const std::vector<uint8_t> levels(b.asset.patchCount(), uint8_t(level));
+            CHECK(b.asset.levels[level].faceCount == drawSurface(b.mesh, b.hierarchy, levels).triangles.size());
+        }
+    }
+}
+
+TEST_CASE("a death level is the first at which the face is degenerate whatever the neighbours do") {
+    ToyOptions options;
+    options.levelCount = 4;
+    const Baked b = bakeToy(test::sphere(4), 3, options);
+    const uint32_t patches = b.asset.patchCount();
+    // alive[patch][level]: faces that some state with this level of the patch draws.
+    std::vector<std::vector<std::set<uint32_t>>> alive(patches, std::vector<std::set<uint32_t>>(4));
+    for (uint32_t state = 0; state < 64; ++state) {
+        const std::array<uint8_t, 3> levels = {uint8_t(state & 3), uint8_t(state >> 2 & 3), uint8_t(state >> 4)};
+        for (const uint32_t f : drawSurface(b.mesh, b.hierarchy, levels).face) {
+            const uint32_t p = b.hierarchy.facePatch[f];
+            alive[p][levels[p]].insert(f);
+        }
+    }
+    for (uint32_t p = 0; p < patches; ++p) {
+        const format::PatchRecord& r = b.asset.patches[p];
+        for (uint32_t level = 0; level < 4; ++level) {
+            uint32_t living = 0;
+            for (uint32_t i = 0; i < r.interiorFaceCount + r.boundaryFaceCount; ++i) {
+                living += b.asset.deaths[r.firstFace + i] > level;
+            }
+            CHECK(living == alive[p][level].size());
+        }
+    }
+}
+
+TEST_CASE("bounds contain every triangle of every state, and cones every normal up to their level") {
+    ToyOptions options;
+    options.levelCount = 4;
+    options.share = 0.2f;
+    for (const bool make : {false, true}) {
+        options.makeVertices = make;
+        const Baked b = bakeToy(test::sphere(6), 6, options);
+        std::vector<uint32_t> scratch(scratchCapacity(b.asset)), out(3 * size_t(b.asset.record->maxPatchFaces));
+        std::mt19937 random(3);
+        uint32_t outside = 0, cones = 0, checked = 0;
+        std::vector<uint8_t> levels(b.asset.patchCount());
+        for (int state = 0; state < 300; ++state) {
+            for (uint8_t& l : levels) l = uint8_t(random() % 4);
+            for (uint32_t p = 0; p < levels.size(); ++p) {
+                const format::PatchRecord& r = b.asset.patches[p];
+                const glm::vec3 center(r.sphereCenter[0], r.sphereCenter[1], r.sphereCenter[2]);
+                const glm::vec3 axis(r.coneAxis[0], r.coneAxis[1], r.coneAxis[2]);
+                cones += r.coneCosine > 0;
+                const uint32_t count = buildIndices(b.asset, p, levels, scratch, out);
+                for (uint32_t i = 0; i < count; ++i) {
+                    const glm::vec3 x = b.asset.positions[out[i]];
+                    outside += glm::length(x - center) > r.sphereRadius;
+                    for (int k = 0; k < 3; ++k) outside += x[k] < r.boxMin[k] || x[k] > r.boxMax[k];
+                }
+                for (uint32_t i = 0; i < count && levels[p] <= r.coneLevel && r.coneCosine > 0; i += 3) {
+                    const glm::dvec3 a(b.asset.positions[out[i]]), c(b.asset.positions[out[i + 1]]),
+                        d(b.asset.positions[out[i + 2]]);
+                    const glm::dvec3 n = glm::cross(c - a, d - a);
+                    if (glm::length(n) == 0) continue;
+                    ++checked;
+                    outside += glm::dot(n, glm::dvec3(axis)) < r.coneCosine * glm::length(n);
+                }
+            }
+        }
+        CHECK(outside == 0);
+        CHECK(cones > 0);
+        CHECK(checked > 0);
+    }
+}
+
+TEST_CASE("parts carry their name, area, centre and neighbours") {
+    ToyOptions options;
+    const Baked b = bakeToy(test::cube(4), 3, options);
+    double area = 0;
+    for (const format::PartRecord& part : b.asset.parts) area += part.area;
+    CHECK(area == doctest::Approx(6));
+    REQUIRE(b.asset.parts.size() == 3);
+    CHECK(b.asset.text(b.asset.parts[1].name) == "part 1");
+    const auto neighboursOf = [&](uint32_t i) {
+        const format::PartRecord& part = b.asset.parts[i];
+        const auto n = b.asset.partNeighbours.subspan(part.firstNeighbour, part.neighbourCount);
+        return std::vector<uint32_t>(n.begin(), n.end());
+    };
+    CHECK(neighboursOf(0) == std::vector<uint32_t>{1});
+    CHECK(neighboursOf(1) == std::vector<uint32_t>{0, 2});
+}
+
+TEST_CASE("attributes come back row by row within the precision of their encodings") {
+    ToyOptions options;
+    Baked b;
+    Model model = test::sphere(6);
+    model.attributes.normals = model.positions;
+    for (const glm::vec3& p : model.positions) {
+        model.attributes.colors[0].emplace_back(p * 0.5f + 0.5f, 1.0f);
+        model.attributes.tangents.emplace_back(p.y, -p.x, 0.0f, p.z < 0 ? -1.0f : 1.0f);
+        model.attributes.joints[0].emplace_back(1, 2, 3, 4);
+        model.attributes.weights[0].emplace_back(p, 0.25f);
+    }
+    b = bakeToy(model, 2, options);
+    const std::vector<uint32_t> wedges = wedgesOfRows(b.asset);
+    REQUIRE(b.asset.vertexStreamCount == 7);
+    CHECK(b.asset.vertexStreams[0].kind == format::StreamKind::position);
+    const Attributes& a = b.hierarchy.attributes;
+    double worstNormal = 1;
+    float worstColor = 0;
+    bool exactWeights = true;
+    for (uint32_t row = 0; row < wedges.size(); ++row) {
+        const uint32_t w = wedges[row];
+        for (uint32_t s = 0; s < b.asset.vertexStreamCount; ++s) {
+            const VertexStream& stream = b.asset.vertexStreams[s];
+            const std::byte* at = stream.bytes.data() + size_t(row) * stream.stride;
+            if (stream.kind == format::StreamKind::normal) {
+                std::array<int16_t, 2> e{};
+                std::memcpy(e.data(), at, sizeof e);
+                glm::dvec3 n(e[0] / 32767.0, e[1] / 32767.0, 0);
+                n.z = 1 - std::abs(n.x) - std::abs(n.y);
+                if (n.z < 0) {
+                    const glm::dvec3 o = n;
+                    n.x = (1 - std::abs(o.y)) * (o.x < 0 ? -1 : 1);
+                    n.y = (1 - std::abs(o.x)) * (o.y < 0 ? -1 : 1);
+                }
+                worstNormal =
+                    std::min(worstNormal, glm::dot(glm::normalize(n), glm::normalize(glm::dvec3(a.normals[w]))));
+            } else if (stream.kind == format::StreamKind::color) {
+                for (int k = 0; k < 4; ++k) {
+                    worstColor = std::max(worstColor, std::abs(float(uint8_t(at[k])) / 255.0f - a.colors[0][w][k]));
+                }
+            } else if (stream.kind == format::StreamKind::weights) {
+                exactWeights = exactWeights && std::memcmp(at, &a.weights[0][w], 16) == 0;
+            }
+        }
+    }
+    CHECK(worstNormal > 1 - 1e-8);
+    CHECK(worstColor <= 0.5f / 255 + 1e-6f);
+    CHECK(exactWeights);
+}
+
+TEST_CASE("errors that fall with the level are refused, and nothing is written") {
+    const Baked b = bakeToy(test::sphere(3), 2, {});
+    PatchErrors errors = test::toyErrors(b.hierarchy);
+    errors.values[2] = errors.values[1] * 0.5f;
+    std::vector<std::byte> out(3);
+    const bake::Status s = layOutAsset(b.mesh, b.parts, b.hierarchy, errors, false, "", out);
+    CHECK(s.outcome == Outcome::promiseBroken);
+    CHECK(s.message.find("falls with the level, patch 0") != std::string::npos);
+    CHECK(out.size() == 3);
 }
