@@ -1,3 +1,4 @@
+#include "bench/thesis_pictures.h"
 #include "meshes/builders.h"
 
 #include <xgc/bake/import.h>
@@ -114,7 +115,13 @@ void printMemoryAndTime(const Subject& s) {
 
 } // namespace
 
-int main() {
+int main(int argc, char** argv) {
+    const std::span<char*> arguments(argv, size_t(argc));
+    const bool pictures = arguments.size() == 3 && std::string_view(arguments[1]) == "--pictures";
+    if (arguments.size() != 1 && !pictures) {
+        fmt::print(stderr, "usage: sweep_thesis [--pictures FOLDER]\n");
+        return 2;
+    }
     const std::filesystem::path data = test::dataDir(XGC_SOURCE_DIR);
     if (data.empty()) {
         fmt::print("SKIPPED: the thesis's models (no XGC_DATA)\n");
@@ -128,5 +135,8 @@ int main() {
         printRemaining(s, example);
         printMemoryAndTime(s);
     }
-    return 0;
+    if (!pictures) return 0;
+    const Status status = test::drawThesisPictures(data, arguments[2]);
+    if (!status.ok()) fmt::print(stderr, "{}\n", status.message);
+    return int(status.outcome);
 }
