@@ -1,10 +1,11 @@
 #include "models/makers.h"
 
-#include "models/noise.h"
 #include "models/surface_net.h"
 #include "models/trig.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 
 // A young dragon that sits upright, one unit tall, facing +z. It is a list of blobs in the order in which they melt
@@ -23,6 +24,8 @@ constexpr glm::vec3 kIvory(0.82f, 0.74f, 0.58f);
 
 const Skin kBack{kGreen, kHide};
 const Skin kDark{kDeepGreen, kHide};
+const Skin kMouth{glm::vec3(0.10f, 0.06f, 0.06f), kHide};
+const Skin kGleam{glm::vec3(0.95f), kEye};
 const Skin kBelly{kCream, kHide};
 const Skin kBlush{kRose, kHide};
 const Skin kHornSkin{kIvory, kHorn};
@@ -52,6 +55,12 @@ void addLimbs(Body& body, std::span<const Joint> joints, float blend, Skin skin)
     addLimb(body, other, blend, skin);
 }
 
+void carveLimbs(Body& body, std::span<const Joint> joints, float blend, Skin skin) {
+    const size_t first = body.blobs.size();
+    addLimbs(body, joints, blend, skin);
+    for (size_t i = first; i < body.blobs.size(); ++i) body.blobs[i].carve = true;
+}
+
 void addPair(Body& body, glm::vec3 center, glm::vec3 radii, double turn, float blend, Skin skin) {
     body.add(ellipsoid(center, radii, rotationZ(turn), blend, skin));
     body.add(ellipsoid(mirror(center), radii, rotationZ(-turn), blend, skin));
@@ -68,11 +77,32 @@ constexpr std::array<Joint, 9> kTail = {{{{0.00f, 0.20f, -0.10f}, 0.130f},
                                          {{0.43f, 0.095f, -0.05f}, 0.022f},
                                          {{0.40f, 0.150f, 0.00f}, 0.016f}}};
 
+/// A Catmull-Rom curve through joints, four pieces between two.
+std::vector<Joint> smoothPath(std::span<const Joint> joints) {
+    const auto at = [&](size_t i, int shift) {
+        const auto last = int64_t(joints.size()) - 1;
+        const Joint& j = joints[size_t(std::clamp(int64_t(i) + shift, int64_t(0), last))];
+        return glm::vec4(j.at, j.radius);
+    };
+    std::vector<Joint> out;
+    for (size_t i = 0; i + 1 < joints.size(); ++i) {
+        const glm::vec4 a = at(i, -1), b = at(i, 0), c = at(i, 1), d = at(i, 2);
+        for (int k = 0; k < 4; ++k) {
+            const float t = 0.25f * float(k);
+            const glm::vec4 p =
+                b + 0.5f * t * (c - a + t * (2.0f * a - 5.0f * b + 4.0f * c - d + t * (3.0f * (b - c) + d - a)));
+            out.push_back({glm::vec3(p), p.w});
+        }
+    }
+    out.push_back(joints.back());
+    return out;
+}
+
 void addTrunk(Body& body) {
     body.add(roundCone({0, 0.235f, -0.03f}, 0.180f, {0, 0.47f, -0.02f}, 0.112f, 0.05f, kBack));
     body.add(ellipsoid({0, 0.27f, 0.045f}, {0.150f, 0.175f, 0.130f}, glm::mat3(1), 0.05f, kBelly));
     body.add(ellipsoid({0, 0.45f, 0.035f}, {0.085f, 0.120f, 0.080f}, glm::mat3(1), 0.05f, kBelly));
-    addLimb(body, kTail, 0.04f, kBack);
+    addLimb(body, smoothPath(kTail), 0.012f, kBack);
     // Spade of the tail.
     body.add(ellipsoid({0.385f, 0.195f, 0.012f}, {0.050f, 0.058f, 0.017f}, rotationZ(0.06) * rotationY(0.08), 0.02f,
                        kBlush));
@@ -139,7 +169,13 @@ void addHead(Body& body) {
     body.add(ellipsoid({0, 0.680f, 0.130f}, {0.088f, 0.042f, 0.098f}, glm::mat3(1), 0.03f, kBelly));
     // Brows over the eyes, then nostrils on small mounds.
     const Joint brow[] = {{{0.060f, 0.868f, 0.120f}, 0.024f}, {{0.135f, 0.852f, 0.090f}, 0.022f}};
-    addLimbs(body, brow, 0.035f, kDark);
+    addLimbs(body, brow, 0.035f, kBack);
+    const Joint smile[] = {{{0.000f, 0.694f, 0.258f}, 0.0065f},
+                           {{0.040f, 0.692f, 0.249f}, 0.0065f},
+                           {{0.074f, 0.697f, 0.222f}, 0.0060f},
+                           {{0.098f, 0.712f, 0.186f}, 0.0050f},
+                           {{0.107f, 0.728f, 0.168f}, 0.0030f}};
+    carveLimbs(body, smile, 0.006f, kMouth);
     addPair(body, {0.036f, 0.752f, 0.230f}, {0.021f, 0.017f, 0.021f}, 0, 0.02f, kBack);
     Blob nostril = ellipsoid({0.039f, 0.757f, 0.250f}, {0.0095f, 0.0065f, 0.012f}, rotationZ(0.08), 0.006f, kDark);
     nostril.carve = true;
@@ -167,6 +203,9 @@ void addEars(Body& body) {
 void addFeatures(Body& body) {
     addPair(body, {0.093f, 0.796f, 0.122f}, {0.062f, 0.066f, 0.052f}, 0, 0.012f, kBack);
     addPair(body, {0.094f, 0.795f, 0.134f}, {0.051f, 0.056f, 0.049f}, 0, 0.002f, kEyeSkin);
+    // A gleam on each eye, both on the same side.
+    body.add(ellipsoid({0.109f, 0.819f, 0.171f}, glm::vec3(0.0100f), glm::mat3(1), 0.001f, kGleam));
+    body.add(ellipsoid({-0.079f, 0.819f, 0.171f}, glm::vec3(0.0100f), glm::mat3(1), 0.001f, kGleam));
     const Joint horn[] = {{{0.075f, 0.895f, -0.02f}, 0.032f},
                           {{0.092f, 0.955f, -0.055f}, 0.024f},
                           {{0.098f, 0.995f, -0.105f}, 0.013f},

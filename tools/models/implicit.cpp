@@ -94,7 +94,6 @@ float Body::field(glm::vec3 p, const BlobList& list) const {
         const float d = distance(i, p);
         f = blobs[i].carve ? -melt(-f, d, blobs[i].blend) : melt(f, d, blobs[i].blend);
     }
-    if (relief && std::abs(f) < 4 * reliefHeight) f -= relief(p);
     return f;
 }
 
@@ -114,8 +113,8 @@ Skin Body::skin(glm::vec3 p, const BlobList& list) const {
         const float d = distance(i, p);
         const float before = f;
         f = blob.carve ? -melt(-f, d, blob.blend) : melt(f, d, blob.blend);
-        if (blob.carve) continue;
-        const float share = before == kInfinity ? 1 : glm::clamp(0.5f + 0.5f * (before - d) / blob.blend, 0.0f, 1.0f);
+        const float lead = blob.carve ? -d - before : before - d;
+        const float share = before == kInfinity ? 1 : glm::clamp(0.5f + 0.5f * lead / blob.blend, 0.0f, 1.0f);
         const bool same = result.material == blob.skin.material;
         // Colours melt within a material and meet sharply between two.
         const float weight = same ? share * share * (3 - 2 * share) : share > 0.5f ? 1.0f : 0.0f;
@@ -149,7 +148,7 @@ glm::vec2 Body::bounds(glm::vec3 center, float radius, const BlobList& list, Blo
         }
         kept.push_back(i);
     }
-    return {low - reliefHeight, high + reliefHeight};
+    return {low, high};
 }
 
 } // namespace xgc::bake::models

@@ -3,7 +3,6 @@
 #include <glm/glm.hpp>
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 namespace xgc::bake::models {
@@ -22,7 +21,7 @@ struct Blob {
     float radiusA = 1;
     float radiusB = 1;
     float blend = 0.01f; ///< width over which it melts into what stands before it
-    bool carve = false;  ///< taken away instead of added
+    bool carve = false;  ///< taken away instead of added; its colour paints the hollow
     bool framed = false; ///< a, b and radii count in the frame
     glm::mat3 toFrame{1};
     glm::vec3 origin{0};
@@ -37,13 +36,10 @@ Blob roundCone(glm::vec3 a, float radiusA, glm::vec3 b, float radiusB, float ble
 /// A rising sequence of indices into Body::blobs.
 using BlobList = std::vector<uint16_t>;
 
-/// Blobs melted together in their order: a field that is negative inside and never steeper than 1, up to the
-/// relief that `relief` adds to it (at most `reliefHeight` up or down).
+/// Blobs melted together in their order: a field that is negative inside and never steeper than 1.
 class Body {
 public:
     std::vector<Blob> blobs;
-    std::function<float(glm::vec3)> relief; ///< outward height of fine detail at a point near the surface
-    float reliefHeight = 0;
 
     void add(const Blob& blob);
     /// All blobs.

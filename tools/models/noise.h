@@ -25,12 +25,7 @@ inline float signedUnit(uint32_t h) {
     return float(h >> 8) * (2.0f / 16777216.0f) - 1.0f;
 }
 
-/// Gradient noise in about [-1, 1] with a period of one unit, twice differentiable.
-float gradientNoise(glm::vec3 p, uint32_t seed);
-/// The same in the plane.
+/// Gradient noise of the plane in about [-1, 1] with a period of one unit, twice differentiable.
 float gradientNoise(glm::vec2 p, uint32_t seed);
-
-/// Distances to the nearest and second nearest of scattered points, one a unit cell.
-glm::vec2 cellNoise(glm::vec3 p, uint32_t seed);
 
 } // namespace xgc::bake::models

@@ -166,8 +166,8 @@ void Profile::cut() {
     to(0.60f, 0.17f);
     material_ = kTurned;
     if (detail_.fine) {
-        step(0.160f, Contour::spline);
-        to(1.00f, 0.160f);
+        step(0.150f, Contour::spline);
+        to(1.00f, 0.150f);
     } else {
         to(1.00f, 0.17f);
     }

@@ -31,7 +31,7 @@ struct Program {
 };
 
 Program programFor(uint32_t faces) {
-    if (faces < 3000) return {4, 5, false, false};
+    if (faces < 4500) return {4, 5, false, false};
     return {6, 9, true, faces >= 40000};
 }
 

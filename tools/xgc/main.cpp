@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
     CLI::App app{"xgc: level of detail for the parts inside a mesh"};
     app.require_subcommand(1);
     xgc::tool::Run run;
+    xgc::tool::addExtract(app, run);
     xgc::tool::addModel(app, run);
     xgc::tool::addBake(app, run);
     xgc::tool::addInspect(app, run);
