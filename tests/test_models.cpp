@@ -266,10 +266,10 @@ TEST_CASE("limits of faces are clamped") {
 // Regenerate by running with XGC_PRINT_GOLDEN=1 and after a look at the models.
 TEST_CASE("models are the same bits on any machine and compiler") {
     const std::map<BundledModel, std::array<uint64_t, 2>> golden = {
-        {BundledModel::creature, {0, 0}},
-        {BundledModel::shaft, {0, 0}},
-        {BundledModel::terrain, {0, 0}},
-        {BundledModel::temple, {0, 0}},
+        {BundledModel::creature, {0x397634e2ac47da7c, 0x7702d54f45170103}},
+        {BundledModel::shaft, {0x31eefdce2ddc6ac6, 0x851892bc17643abe}},
+        {BundledModel::terrain, {0xcacdfca1e0e52bf0, 0xf78f912301b0810f}},
+        {BundledModel::temple, {0xa2c61b5d1ebbf10d, 0xd30c7cf28299de9a}},
     };
     for (const auto& [which, hashes] : golden) {
         CAPTURE(int(which));
