@@ -1,0 +1,100 @@
+#include "files.h"
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+// Exit codes, help and the keys of the JSON that scripts rely on.
+
+using namespace xgc::test;
+using Json = nlohmann::json;
+
+namespace {
+
+const std::vector<std::string> kSubcommands = {"bake", "segment", "inspect", "verify", "model"};
+
+void checkUsage(const std::vector<std::string>& arguments) {
+    const RunResult run = runXgc(arguments);
+    const std::string first = arguments.empty() ? "(no argument)" : arguments.front();
+    INFO(first, ": ", run.err);
+    CHECK(run.exitCode == 2);
+    CHECK_FALSE(run.err.empty());
+    CHECK(run.out.empty());
+}
+
+void checkKeys(const Json& json, std::initializer_list<const char*> keys) {
+    for (const char* key : keys) CHECK_MESSAGE(json.contains(key), key);
+}
+
+} // namespace
+
+TEST_CASE("misuse exits with 2 and says how") {
+    checkUsage({});
+    checkUsage({"frobnicate"});
+    for (const std::string& sub : kSubcommands) {
+        checkUsage({sub});
+        checkUsage({sub, "--no-such-option"});
+    }
+}
+
+TEST_CASE("every subcommand has help with an example") {
+    CHECK(runXgc({"--help"}).exitCode == 0);
+    for (const std::string& sub : kSubcommands) {
+        const RunResult run = runXgc({sub, "--help"});
+        INFO(sub);
+        CHECK(run.exitCode == 0);
+        CHECK(run.out.find("Example: xgc " + sub) != std::string::npos);
+    }
+}
+
+TEST_CASE("presets and parts that do not exist are refused by name") {
+    const Folder folder("presets");
+    const std::string in = folder.file("cube.obj"), out = folder.file("cube.xgc");
+    writeText(in, cubeObj(2));
+    for (const auto& [option, value] : {std::pair{"--preset", "nonsense"}, std::pair{"--parts", "nonsense"}}) {
+        const RunResult run = runXgc({"bake", in, "-o", out, option, value});
+        CHECK(run.exitCode == 2);
+        CHECK(run.err.find(value) != std::string::npos);
+    }
+    CHECK(folder.names() == std::vector<std::string>{"cube.obj"});
+}
+
+TEST_CASE("JSON has the documented keys, and work without a terminal draws no progress") {
+    const Folder folder("json");
+    const std::string in = folder.file("cube.obj"), out = folder.file("cube.xgc"), report = folder.file("cube.json");
+    writeText(in, cubeObj(6));
+    const RunResult baked = runXgc({"bake", in, "-o", out, "--report", report});
+    REQUIRE_MESSAGE(baked.exitCode == 0, baked.err);
+    CHECK(baked.err.find('\r') == std::string::npos);
+    CHECK(baked.out.empty());
+
+    const Json bake = Json::parse(readText(report));
+    checkKeys(bake, {"input", "stages", "faces", "parts", "patches", "levels", "verdicts"});
+    REQUIRE_FALSE(bake["stages"].empty());
+    checkKeys(bake["stages"][0], {"name", "seconds", "peakBytes"});
+    for (const Json& verdict : bake["verdicts"]) checkKeys(verdict, {"severity", "what", "where", "remedy"});
+
+    const Json inspect = Json::parse(runXgc({"inspect", out, "--json"}).out);
+    checkKeys(inspect, {"faces", "vertices", "positions", "parts", "patches", "levels", "bytes"});
+    CHECK(inspect["faces"] == 432);
+    checkKeys(inspect["levels"][0], {"faces", "error"});
+    checkKeys(inspect["bytes"], {"file", "memory", "base"});
+
+    const Json verify = Json::parse(runXgc({"verify", out, "--source", in, "--states", "10", "--json"}).out);
+    checkKeys(verify,
+              {"ok", "states", "faces", "flips", "oddEdges", "fourUseEdges", "errorSamples", "errorViolations"});
+    CHECK(verify["ok"] == true);
+}
+
+TEST_CASE("a baked asset does not depend on the number of threads") {
+    const Folder folder("threads");
+    const std::string in = folder.file("cube.obj");
+    writeText(in, cubeObj(10));
+    std::string first;
+    for (const char* jobs : {"1", "2", "5"}) {
+        const std::string out = folder.file("cube.xgc");
+        const RunResult run = runXgc({"bake", in, "-o", out, "--jobs", jobs, "--quiet"});
+        REQUIRE_MESSAGE(run.exitCode == 0, run.err);
+        if (first.empty()) first = readText(out);
+        CHECK(readText(out) == first);
+    }
+}
