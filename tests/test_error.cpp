@@ -111,12 +111,15 @@ TEST_CASE("the tree finds what brute force finds, and so does Embree") {
     for (int i = 0; i < 300; ++i) {
         const glm::vec3 p = 2.0f * numbers.point();
         double brute = INFINITY;
-        for (const Triangle& t : triangles) brute = std::min(brute, squaredDistance(p, t.a, t.b, t.c));
-        CHECK(tree.squared(p) == brute);
+        for (const Triangle& s : triangles) brute = std::min(brute, squaredDistance(p, s.a, s.b, s.c));
+        const SurfaceDistance::Hit hit = tree.nearest(p);
+        CHECK(hit.squared == brute);
+        const Triangle& t = triangles[hit.triangle];
+        CHECK(squaredDistance(p, t.a, t.b, t.c) == brute);
         CHECK(nearest.distance(p) == doctest::Approx(std::sqrt(brute)).epsilon(1e-9));
-        CHECK(tree.squared(p, brute * 1.5) <= brute * 1.5);
+        CHECK(tree.nearest(p, brute * 1.5).squared <= brute * 1.5);
     }
-    CHECK(std::isinf(SurfaceDistance({}).squared({0, 0, 0})));
+    CHECK(std::isinf(SurfaceDistance({}).nearest({0, 0, 0}).squared));
     CHECK(std::isinf(Nearest({}, {}).distance({0, 0, 0})));
 }
 

@@ -78,36 +78,50 @@ private:
     const Domains& domains_;
 };
 
-/// Orders runs of faces for the vertex cache; keeps its scratch memory.
-class CacheOrder {
+/// Numbers the wedges of corner lists from 0 by first use; keeps its scratch memory.
+class Numbering {
 public:
-    explicit CacheOrder(const Lives& lives) : lives_(lives) {}
+    explicit Numbering(size_t wedgeCount) : number_(wedgeCount, kNone) {}
 
-    void order(std::span<uint32_t> faces, uint32_t level) {
-        if (faces.size() < 2) return;
-        compact(faces, level);
-        ordered_.resize(corners_.size());
-        meshopt_optimizeVertexCache(ordered_.data(), corners_.data(), corners_.size(), wedges_.size());
-        permute(faces);
+    /// Returns how many there are.
+    uint32_t operator()(std::vector<uint32_t>& corners) {
+        for (uint32_t& c : corners) {
+            if (number_[c] == kNone) {
+                number_[c] = uint32_t(used_.size());
+                used_.push_back(c);
+            }
+            c = number_[c];
+        }
+        const auto count = uint32_t(used_.size());
+        for (const uint32_t wedge : used_) number_[wedge] = kNone;
+        used_.clear();
+        return count;
     }
 
 private:
-    using Key = std::array<uint32_t, 4>; ///< three corners, then an index
+    std::vector<uint32_t> number_, used_;
+};
 
-    /// Drawn corners, numbered from 0.
-    void compact(std::span<const uint32_t> faces, uint32_t level) {
+/// Orders runs of faces for the vertex cache; keeps its scratch memory.
+class CacheOrder {
+public:
+    CacheOrder(const Lives& lives, size_t wedgeCount) : lives_(lives), number_(wedgeCount) {}
+
+    void order(std::span<uint32_t> faces, uint32_t level) {
+        if (faces.size() < 2) return;
         corners_.clear();
         for (const uint32_t f : faces) {
             const glm::uvec3 c = lives_.drawn(f, level);
             corners_.insert(corners_.end(), {c.x, c.y, c.z});
         }
-        wedges_ = corners_;
-        std::sort(wedges_.begin(), wedges_.end());
-        wedges_.erase(std::unique(wedges_.begin(), wedges_.end()), wedges_.end());
-        for (uint32_t& c : corners_) {
-            c = uint32_t(std::lower_bound(wedges_.begin(), wedges_.end(), c) - wedges_.begin());
-        }
+        const uint32_t wedges = number_(corners_);
+        ordered_.resize(corners_.size());
+        meshopt_optimizeVertexCache(ordered_.data(), corners_.data(), corners_.size(), wedges);
+        permute(faces);
     }
+
+private:
+    using Key = std::array<uint32_t, 4>; ///< three corners, then an index
 
     static void keys(const std::vector<uint32_t>& corners, std::vector<Key>& out) {
         out.clear();
@@ -126,7 +140,8 @@ private:
     }
 
     const Lives& lives_;
-    std::vector<uint32_t> corners_, ordered_, wedges_, faces_;
+    Numbering number_;
+    std::vector<uint32_t> corners_, ordered_, faces_;
     std::vector<Key> from_, to_;
 };
 
@@ -229,9 +244,10 @@ Faces layOut(const FacesByPatch& patches, const std::vector<Life>& lives, uint32
 /// Cache misses and triangles of each level.
 struct Misses {
     std::vector<size_t> misses, triangles;
-    std::vector<uint32_t> corners, wedges;
+    std::vector<uint32_t> corners;
+    Numbering number;
 
-    explicit Misses(uint32_t levelCount) : misses(levelCount), triangles(levelCount) {}
+    Misses(uint32_t levelCount, size_t wedgeCount) : misses(levelCount), triangles(levelCount), number(wedgeCount) {}
 
     void addPatch(const Lives& lives, std::span<const uint32_t> faces, uint32_t level) {
         corners.clear();
@@ -240,19 +256,17 @@ struct Misses {
             if (c.x != c.y && c.y != c.z && c.z != c.x) corners.insert(corners.end(), {c.x, c.y, c.z});
         }
         if (corners.empty()) return;
-        wedges = corners;
-        std::sort(wedges.begin(), wedges.end());
-        wedges.erase(std::unique(wedges.begin(), wedges.end()), wedges.end());
-        for (uint32_t& c : corners) c = uint32_t(std::lower_bound(wedges.begin(), wedges.end(), c) - wedges.begin());
+        const uint32_t wedges = number(corners);
         const meshopt_VertexCacheStatistics s =
-            meshopt_analyzeVertexCache(corners.data(), corners.size(), wedges.size(), 16, 0, 0);
+            meshopt_analyzeVertexCache(corners.data(), corners.size(), wedges, 16, 0, 0);
         misses[level] += s.vertices_transformed;
         triangles[level] += corners.size() / 3;
     }
 };
 
-std::vector<float> acmr(const Lives& lives, const Faces& faces, uint32_t levelCount) {
-    Misses misses(levelCount);
+std::vector<float> acmr(const Lives& lives, const Faces& faces, const Hierarchy& h) {
+    const uint32_t levelCount = h.levelCount;
+    Misses misses(levelCount, h.wedgePosition.size());
     for (size_t p = 0; p + 1 < faces.firstFace.size(); ++p) {
         const auto patch =
             std::span(faces.order).subspan(faces.firstFace[p], faces.firstFace[p + 1] - faces.firstFace[p]);
@@ -266,7 +280,7 @@ std::vector<float> acmr(const Lives& lives, const Faces& faces, uint32_t levelCo
 }
 
 /// The cut with the fewest cache misses per triangle in the mean over the levels, on a sample of the patches.
-std::vector<uint32_t> chooseBands(const FacesByPatch& all, const std::vector<Life>& lives, uint32_t levelCount,
+std::vector<uint32_t> chooseBands(const FacesByPatch& all, const std::vector<Life>& lives, const Hierarchy& h,
                                   const Lives& walker, CacheOrder& cache) {
     constexpr size_t kSampleFaces = 100000;
     const DeathCounts counts = countDeaths(lives);
@@ -277,7 +291,7 @@ std::vector<uint32_t> chooseBands(const FacesByPatch& all, const std::vector<Lif
         std::vector<uint32_t> bands = cutBands(counts, factor);
         if (bands == last) continue;
         last = bands;
-        const std::vector<float> rates = acmr(walker, layOut(some, lives, levelCount, bands, cache), levelCount);
+        const std::vector<float> rates = acmr(walker, layOut(some, lives, h.levelCount, bands, cache), h);
         const double sum = std::accumulate(rates.begin(), rates.end(), 0.0);
         if (sum < bestSum) {
             bestSum = sum;
@@ -296,8 +310,8 @@ Faces orderFaces(const Mesh& mesh, const Hierarchy& h, const Domains& domains) {
     for (uint32_t f = 0; f < mesh.faceCount(); ++f) lives.push_back(walker.of(f));
 
     const FacesByPatch all = groupByPatch(h);
-    CacheOrder cache(walker);
-    Faces faces = layOut(all, lives, h.levelCount, chooseBands(all, lives, h.levelCount, walker, cache), cache);
+    CacheOrder cache(walker, h.wedgePosition.size());
+    Faces faces = layOut(all, lives, h.levelCount, chooseBands(all, lives, h, walker, cache), cache);
     faces.levelFaceCounts.assign(h.levelCount, 0);
     for (const Life& life : lives) {
         const uint32_t levels = std::min<uint32_t>(life.uniformDeath, h.levelCount);
@@ -309,7 +323,7 @@ Faces orderFaces(const Mesh& mesh, const Hierarchy& h, const Domains& domains) {
 std::vector<float> measureAcmr(const Mesh& mesh, const Hierarchy& h, const Faces& faces) {
     const std::vector<uint8_t> used = usedWedges(mesh, h);
     const Domains domains = orderDomains(h, used);
-    return acmr(Lives(mesh, h, domains), faces, h.levelCount);
+    return acmr(Lives(mesh, h, domains), faces, h);
 }
 
 } // namespace xgc::bake::layout

@@ -56,6 +56,7 @@ SurfaceDistance::SurfaceDistance(std::vector<Triangle> triangles) : triangles_(s
     std::vector<Triangle> sorted(triangles_.size());
     for (size_t i = 0; i < order.size(); ++i) sorted[i] = triangles_[order[i]];
     triangles_ = std::move(sorted);
+    given_ = std::move(order);
 }
 
 // Halves the longest side of the centroids' box at the median: the depth is log2 of the count.
@@ -85,8 +86,8 @@ void SurfaceDistance::build(uint32_t first, uint32_t last, const std::vector<glm
     build(middle, last, centroids, order);
 }
 
-double SurfaceDistance::squared(const glm::dvec3& p, double enough) const {
-    double best = std::numeric_limits<double>::infinity();
+SurfaceDistance::Hit SurfaceDistance::nearest(const glm::dvec3& p, double enough) const {
+    Hit best{std::numeric_limits<double>::infinity(), 0};
     if (nodes_.empty()) return best;
     struct Entry {
         uint32_t node;
@@ -95,14 +96,15 @@ double SurfaceDistance::squared(const glm::dvec3& p, double enough) const {
     Entry stack[64];
     uint32_t depth = 0;
     stack[depth++] = {0, squaredBoxDistance(p, nodes_[0].low, nodes_[0].high)};
-    while (depth > 0 && best > enough) {
+    while (depth > 0 && best.squared > enough) {
         const Entry entry = stack[--depth];
-        if (entry.distance >= best) continue;
+        if (entry.distance >= best.squared) continue;
         const Node& node = nodes_[entry.node];
         if (node.count > 0) {
             for (uint32_t i = node.first; i < node.first + node.count; ++i) {
                 const Triangle& t = triangles_[i];
-                best = std::min(best, squaredDistance(p, t.a, t.b, t.c));
+                const double squared = squaredDistance(p, t.a, t.b, t.c);
+                if (squared < best.squared) best = {squared, i};
             }
             continue;
         }
@@ -113,6 +115,7 @@ double SurfaceDistance::squared(const glm::dvec3& p, double enough) const {
         stack[depth++] = far;
         stack[depth++] = near;
     }
+    best.triangle = given_[best.triangle];
     return best;
 }
 

@@ -19,9 +19,12 @@ class SurfaceDistance {
 public:
     explicit SurfaceDistance(std::vector<Triangle> triangles);
 
-    /// Squared distance from `p` to the surface, or any value at or below `enough` once the surface is known to
-    /// lie that near. Infinite where there is no surface.
-    double squared(const glm::dvec3& p, double enough = 0) const;
+    struct Hit {
+        double squared;    ///< distance; infinite where there is no surface
+        uint32_t triangle; ///< that lies so near, of those given
+    };
+    /// The nearest triangle to `p`, or any at or below the squared distance `enough`.
+    Hit nearest(const glm::dvec3& p, double enough = 0) const;
 
 private:
     struct Node {
@@ -31,7 +34,8 @@ private:
     };
     void build(uint32_t first, uint32_t last, const std::vector<glm::vec3>& centroids, std::vector<uint32_t>& order);
 
-    std::vector<Triangle> triangles_;
+    std::vector<Triangle> triangles_; ///< in the order of the leaves
+    std::vector<uint32_t> given_;     ///< triangle as given, by leaf order
     std::vector<Node> nodes_;
 };
 
