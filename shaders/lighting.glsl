@@ -5,11 +5,11 @@ layout(location = 1) in vec3 inNormal;
 layout(location = 2) in vec4 inColor;
 layout(location = 3) flat in uint inDraw;
 
-const vec3 kSky = vec3(0.40, 0.44, 0.50);
-const vec3 kGround = vec3(0.20, 0.175, 0.155);
-const vec3 kKey = vec3(0.78, 0.74, 0.68);
-const vec3 kFill = vec3(0.13, 0.16, 0.20);
-const vec3 kRim = vec3(0.16, 0.18, 0.21);
+const vec3 kSky = vec3(0.29, 0.325, 0.38);
+const vec3 kGround = vec3(0.125, 0.105, 0.09);
+const vec3 kKey = vec3(0.80, 0.755, 0.69);
+const vec3 kFill = vec3(0.085, 0.11, 0.145);
+const vec3 kRim = vec3(0.17, 0.19, 0.22);
 
 // The normal on the side that is seen. The face's own plane decides which side that is, so two-sided surfaces, mirrored
 // instances and inconsistent winding are all lit rightly.
@@ -66,9 +66,9 @@ vec3 partColor(uint i) {
     return fromSrgb(colors[i % kPartColorCount]);
 }
 
-// Fine is deep blue, coarse is pale yellow; lightness rises evenly, so the order shows in grey too.
+// Fine is blue, coarse is pale yellow; lightness rises evenly, so the order shows in grey too.
 vec3 levelColor(float t) {
-    const uint stops[9] = uint[](0x3B3A8Cu, 0x3A5BA8u, 0x357FAFu, 0x2F9FA6u, 0x45B78Fu, 0x7DC96Eu, 0xB6D456u, 0xE8D94Eu,
+    const uint stops[9] = uint[](0x4B56B8u, 0x3F72C4u, 0x3A8DC4u, 0x37A6BAu, 0x4BBBA0u, 0x79CC7Fu, 0xADD864u, 0xDDE05Eu,
                                  0xFFEFA0u);
     const float x = clamp(t, 0.0, 1.0) * 8.0;
     const uint i = min(uint(x), 7u);
@@ -78,8 +78,8 @@ vec3 levelColor(float t) {
 Surface surfaceOf(DrawRecord draw, uint mode) {
     if (mode == kModeParts) return Surface(partColor(draw.partColor), vec3(0), 0.0, 0.7);
     if (mode == kModeLevels) return Surface(levelColor(draw.levelFraction), vec3(0), 0.0, 0.8);
-    if (mode == kModeWire) return Surface(vec3(0.62), vec3(0), 0.0, 0.9);
+    if (mode == kModeWire) return Surface(vec3(0.56), vec3(0), 0.0, 0.9);
     const MaterialRecord m = Materials(push.materials).at[draw.material];
     // White is what most models without a material have: short of full reflection it keeps its shading.
-    return Surface(0.86 * m.baseColor.rgb * inColor.rgb, m.emissive.rgb, m.metallic, m.roughness);
+    return Surface(0.74 * m.baseColor.rgb * inColor.rgb, m.emissive.rgb, m.metallic, m.roughness);
 }

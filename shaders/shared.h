@@ -37,7 +37,8 @@ struct ViewRecord {
     vec4 forward;
     vec4 sky; ///< up in the world, for the ambient light
     uint mode;
-    uint reserved0, reserved1, reserved2;
+    float linePixels; ///< width of an edge's line
+    uint reserved0, reserved1;
 };
 
 /// An instance: where it stands and where its vertex streams lie. Address 0: the asset has none.

@@ -36,7 +36,9 @@ Status Attachment::create(const Context& context, VkExtent2D size, VkFormat form
     if (result == VK_SUCCESS) {
         result = vk.vkBindImageMemory(context.device(), image_, memory_.memory, memory_.offset);
     }
-    if (result == VK_SUCCESS) {
+    constexpr VkImageUsageFlags kViewed =
+        VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    if (result == VK_SUCCESS && (usage & kViewed)) {
         VkImageViewCreateInfo view{};
         view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
         view.image = image_;

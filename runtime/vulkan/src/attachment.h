@@ -4,7 +4,7 @@
 
 namespace xgc::vulkan {
 
-/// A 2D attachment with memory of its own and one view.
+/// A 2D image with memory of its own, and a view where the usage is that of an attachment.
 class Attachment {
 public:
     Attachment() = default;

@@ -19,6 +19,10 @@ constexpr Access kDepthWrite{VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_P
                              VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT |
                                  VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT};
 constexpr Access kCopyRead{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT};
+/// Copies and blits alike: which of them reads the drawn picture depends on the supersampling.
+constexpr Access kTransferRead{VK_PIPELINE_STAGE_2_COPY_BIT | VK_PIPELINE_STAGE_2_BLIT_BIT,
+                               VK_ACCESS_2_TRANSFER_READ_BIT};
+constexpr Access kBlitWrite{VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
 constexpr Access kCopyWrite{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
 constexpr Access kHostRead{VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT};
 
@@ -35,7 +39,8 @@ struct Offscreen::Impl {
     VkQueue queue = VK_NULL_HANDLE;
     OffscreenDesc desc;
     Attachment samples; ///< where there is more than one sample a pixel
-    Attachment color;   ///< what is read back
+    Attachment color;   ///< one sample a pixel
+    Attachment halved;  ///< where it is supersampled
     Attachment depth;
     std::vector<Slot> slots;
     Timeline timeline;
@@ -47,6 +52,10 @@ struct Offscreen::Impl {
     Status createSlot(Slot& slot);
     Slot& slotOf(uint64_t f) { return slots[f % slots.size()]; }
     bool multisampled() const { return desc.samples != VK_SAMPLE_COUNT_1_BIT; }
+    VkExtent2D drawnSize() const {
+        return {desc.size.width * desc.supersampling, desc.size.height * desc.supersampling};
+    }
+    void halve(VkCommandBuffer cmd);
 };
 
 Offscreen::Impl::~Impl() {
@@ -60,14 +69,20 @@ Offscreen::Impl::~Impl() {
 
 Status Offscreen::Impl::createAttachments() {
     const VkImageUsageFlags drawn = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
-    Status status = color.create(*context, desc.size, desc.colorFormat, VK_SAMPLE_COUNT_1_BIT,
+    Status status = color.create(*context, drawnSize(), desc.colorFormat, VK_SAMPLE_COUNT_1_BIT,
                                  drawn | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
     if (status.ok() && multisampled()) {
-        status = samples.create(*context, desc.size, desc.colorFormat, desc.samples, drawn, VK_IMAGE_ASPECT_COLOR_BIT);
+        status =
+            samples.create(*context, drawnSize(), desc.colorFormat, desc.samples, drawn, VK_IMAGE_ASPECT_COLOR_BIT);
     }
     if (status.ok()) {
-        status = depth.create(*context, desc.size, desc.depthFormat, desc.samples,
+        status = depth.create(*context, drawnSize(), desc.depthFormat, desc.samples,
                               VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, VK_IMAGE_ASPECT_DEPTH_BIT);
+    }
+    if (status.ok() && desc.supersampling == 2) {
+        status =
+            halved.create(*context, desc.size, desc.colorFormat, VK_SAMPLE_COUNT_1_BIT,
+                          VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
     }
     return status;
 }
@@ -99,6 +114,9 @@ Offscreen& Offscreen::operator=(Offscreen&&) noexcept = default;
 Status Offscreen::create(const Context& context, VkQueue queue, const OffscreenDesc& desc) {
     if (desc.size.width == 0 || desc.size.height == 0 || desc.framesInFlight == 0) {
         return {StatusCode::badArgument, "OffscreenDesc: the size and framesInFlight must not be zero", 0};
+    }
+    if (desc.supersampling != 1 && desc.supersampling != 2) {
+        return {StatusCode::badArgument, "OffscreenDesc::supersampling: 1 or 2", desc.supersampling};
     }
     auto impl = std::make_unique<Impl>();
     impl->context = &context;
@@ -147,7 +165,7 @@ void Offscreen::beginRendering(VkCommandBuffer cmd, std::span<const float, 4> cl
     const VkImageLayout depthLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
     // The frame before may still be drawing to the attachments, or copying from them.
     discard(self.color, VK_IMAGE_ASPECT_COLOR_BIT, colorLayout,
-            {kColorWrite.stages | kCopyRead.stages, kColorWrite.access}, kColorWrite);
+            {kColorWrite.stages | kTransferRead.stages, kColorWrite.access}, kColorWrite);
     if (self.multisampled()) {
         discard(self.samples, VK_IMAGE_ASPECT_COLOR_BIT, colorLayout, kColorWrite,
                 {kColorWrite.stages, kColorWrite.access | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT});
@@ -174,15 +192,37 @@ void Offscreen::beginRendering(VkCommandBuffer cmd, std::span<const float, 4> cl
     depth.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
     VkRenderingInfo info{};
     info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
-    info.renderArea = {{0, 0}, self.desc.size};
+    info.renderArea = {{0, 0}, self.drawnSize()};
     info.layerCount = 1;
     info.colorAttachmentCount = 1;
     info.pColorAttachments = &color;
     info.pDepthAttachment = &depth;
     vk.vkCmdBeginRendering(cmd, &info);
-    const VkViewport viewport{0, 0, float(self.desc.size.width), float(self.desc.size.height), 0, 1};
+    const VkViewport viewport{0, 0, float(info.renderArea.extent.width), float(info.renderArea.extent.height), 0, 1};
     vk.vkCmdSetViewport(cmd, 0, 1, &viewport);
     vk.vkCmdSetScissor(cmd, 0, 1, &info.renderArea);
+}
+
+/// Scales the drawn picture down: the linear filter, halfway between four pixels, is their mean.
+void Offscreen::Impl::halve(VkCommandBuffer cmd) {
+    const Functions& vk = context->vk();
+    // The frame before may still be copying from it.
+    imageBarrier(
+        vk, cmd,
+        {halved.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL},
+        kCopyRead, kBlitWrite);
+    const VkExtent2D from = drawnSize();
+    VkImageBlit region{};
+    region.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    region.srcOffsets[1] = {int32_t(from.width), int32_t(from.height), 1};
+    region.dstSubresource = region.srcSubresource;
+    region.dstOffsets[1] = {int32_t(desc.size.width), int32_t(desc.size.height), 1};
+    vk.vkCmdBlitImage(cmd, color.image(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, halved.image(),
+                      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, VK_FILTER_LINEAR);
+    imageBarrier(vk, cmd,
+                 {halved.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL},
+                 kBlitWrite, kCopyRead);
 }
 
 void Offscreen::endRendering(VkCommandBuffer cmd) {
@@ -192,12 +232,15 @@ void Offscreen::endRendering(VkCommandBuffer cmd) {
     imageBarrier(vk, cmd,
                  {self.color.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                   VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL},
-                 kColorWrite, kCopyRead);
+                 kColorWrite, kTransferRead);
+    const bool halved = self.desc.supersampling == 2;
+    if (halved) self.halve(cmd);
     VkBufferImageCopy region{};
     region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     region.imageExtent = {self.desc.size.width, self.desc.size.height, 1};
-    vk.vkCmdCopyImageToBuffer(cmd, self.color.image(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                              self.slotOf(self.frame).pixels.handle(), 1, &region);
+    vk.vkCmdCopyImageToBuffer(cmd, halved ? self.halved.image() : self.color.image(),
+                              VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, self.slotOf(self.frame).pixels.handle(), 1,
+                              &region);
     memoryBarrier(vk, cmd, kCopyWrite, kHostRead);
 }
 

@@ -55,6 +55,7 @@ shader::ViewRecord viewRecord(const ViewDesc& view) {
     record.forward = glm::vec4(basis.forward, 0);
     record.sky = glm::vec4(view.sky, 0);
     record.mode = uint32_t(view.mode);
+    record.linePixels = view.linePixels;
     return record;
 }
 

@@ -20,6 +20,7 @@
     X(vkCmdBeginRendering)                                                                                             \
     X(vkCmdBindIndexBuffer)                                                                                            \
     X(vkCmdBindPipeline)                                                                                               \
+    X(vkCmdBlitImage)                                                                                                  \
     X(vkCmdCopyBuffer)                                                                                                 \
     X(vkCmdCopyImageToBuffer)                                                                                          \
     X(vkCmdDraw)                                                                                                       \

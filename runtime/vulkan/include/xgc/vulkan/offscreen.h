@@ -13,6 +13,9 @@ struct OffscreenDesc {
     VkFormat colorFormat = VK_FORMAT_R8G8B8A8_SRGB; ///< four bytes a pixel
     VkFormat depthFormat = VK_FORMAT_D32_SFLOAT;
     VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_4_BIT; ///< more than one: resolved
+    /// 1, or 2 to draw at twice the size and halve the picture at the end: for stills. What is in pixels of the target
+    /// (ViewDesc::linePixels) doubles too.
+    uint32_t supersampling = 1;
     uint32_t framesInFlight = 2;
 };
 

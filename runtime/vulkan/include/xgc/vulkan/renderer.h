@@ -52,6 +52,7 @@ struct ViewDesc {
     Camera camera;
     glm::vec3 sky{0, 1, 0}; ///< unit, up in the world: where the ambient light comes from
     ShadingMode mode = ShadingMode::shaded;
+    float linePixels = 1.1f; ///< of the target: width of the edges in mode wire
 };
 
 /// What a host's own passes need, with shaders and pipelines of their own (shared.h has the records): valid from
