@@ -116,7 +116,7 @@ public:
         XGC_REQUIRE_OK(renderer.addAsset(asset, handle));
         for (int i = 0; i < 10000 && !renderer.resident(handle); ++i) {
             XGC_REQUIRE_OK(renderer.beginFrame());
-            XGC_REQUIRE_OK(renderer.endFrame());
+            renderer.endFrame();
             submit(view);
         }
         REQUIRE(renderer.resident(handle));
@@ -129,7 +129,7 @@ public:
     Picture draw(vulkan::InstanceHandle instance, Levels levels, const vulkan::ViewDesc& view) {
         XGC_REQUIRE_OK(renderer.beginFrame());
         XGC_REQUIRE_OK(renderer.setLevels(instance, levels));
-        XGC_REQUIRE_OK(renderer.endFrame());
+        renderer.endFrame();
         return read(submit(view));
     }
 

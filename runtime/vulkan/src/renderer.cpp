@@ -249,7 +249,7 @@ void Renderer::Impl::writeDraws() {
     std::copy_n(instanceRecords.begin(), instanceEnd, records.instances());
 }
 
-Status Renderer::endFrame() {
+void Renderer::endFrame() {
     Impl& self = *impl_;
     self.drawList.endFrame();
     self.writeDraws();
@@ -261,7 +261,6 @@ Status Renderer::endFrame() {
     }
     self.stats = self.drawList.stats();
     self.stats.uploadBytes += uint32_t(self.assets.uploads().bytes());
-    return {};
 }
 
 // Recording ---------------------------------------------------------------------------------------------------------

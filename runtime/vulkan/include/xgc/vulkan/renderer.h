@@ -108,7 +108,7 @@ public:
     Status setLevels(InstanceHandle instance, Levels levels);
     /// Levels that the instance is drawn at; empty before its first success.
     Levels levels(InstanceHandle instance) const;
-    Status endFrame();
+    void endFrame();
 
     void recordTransfers(VkCommandBuffer cmd) const;
     /// A light grey gradient over the whole target; no depth. Optional.
