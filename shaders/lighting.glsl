@@ -5,9 +5,9 @@ layout(location = 1) in vec3 inNormal;
 layout(location = 2) in vec4 inColor;
 layout(location = 3) flat in uint inDraw;
 
-const vec3 kSky = vec3(0.29, 0.325, 0.38);
+const vec3 kSky = vec3(0.31, 0.345, 0.40);
 const vec3 kGround = vec3(0.125, 0.105, 0.09);
-const vec3 kKey = vec3(0.80, 0.755, 0.69);
+const vec3 kKey = vec3(0.90, 0.85, 0.78);
 const vec3 kFill = vec3(0.085, 0.11, 0.145);
 const vec3 kRim = vec3(0.17, 0.19, 0.22);
 
@@ -66,11 +66,12 @@ vec3 partColor(uint i) {
     return fromSrgb(colors[i % kPartColorCount]);
 }
 
-// Fine is blue, coarse is pale yellow; lightness rises evenly, so the order shows in grey too.
-vec3 levelColor(float t) {
-    const uint stops[9] = uint[](0x4B56B8u, 0x3F72C4u, 0x3A8DC4u, 0x37A6BAu, 0x4BBBA0u, 0x79CC7Fu, 0xADD864u, 0xDDE05Eu,
+// Fine is blue, coarse is pale yellow; lightness rises evenly, so the order shows in grey too. The root spreads the fine
+// levels, where most patches are.
+vec3 levelColor(float levelFraction) {
+    const uint stops[9] = uint[](0x5560C4u, 0x4378CCu, 0x3A8DC4u, 0x37A6BAu, 0x4BBBA0u, 0x79CC7Fu, 0xADD864u, 0xDDE05Eu,
                                  0xFFEFA0u);
-    const float x = clamp(t, 0.0, 1.0) * 8.0;
+    const float x = sqrt(clamp(levelFraction, 0.0, 1.0)) * 8.0;
     const uint i = min(uint(x), 7u);
     return mix(fromSrgb(stops[i]), fromSrgb(stops[i + 1]), x - float(i));
 }
@@ -81,5 +82,5 @@ Surface surfaceOf(DrawRecord draw, uint mode) {
     if (mode == kModeWire) return Surface(vec3(0.56), vec3(0), 0.0, 0.9);
     const MaterialRecord m = Materials(push.materials).at[draw.material];
     // White is what most models without a material have: short of full reflection it keeps its shading.
-    return Surface(0.74 * m.baseColor.rgb * inColor.rgb, m.emissive.rgb, m.metallic, m.roughness);
+    return Surface(0.80 * m.baseColor.rgb * inColor.rgb, m.emissive.rgb, m.metallic, m.roughness);
 }

@@ -19,7 +19,7 @@ float edgeInk(float linePixels) {
     const float height = 1.0 / max(slope.x, max(slope.y, slope.z));
     const float halfWidth = 0.5 * linePixels;
     const float line = 1.0 - smoothstep(halfWidth - 0.4, halfWidth + 0.5, nearest);
-    return line * clamp(height / (9.0 * linePixels), 0.15, 0.9);
+    return line * clamp(height / (5.0 * linePixels), 0.2, 0.9);
 }
 
 void main() {

@@ -27,7 +27,7 @@ struct Options {
     uint32_t frames = 60;
     float errorPixels = 1;
     std::vector<float> bands; ///< empty: errorPixels decides
-    vulkan::ShadingMode mode = vulkan::ShadingMode::shaded;
+    std::string mode = "shaded";
     uint32_t width = 1280, height = 720;
     uint32_t instances = 1;
 };
@@ -103,7 +103,7 @@ Status drawFrame(App& app, const vulkan::Camera& camera, uint32_t& deferred, uin
     app.renderer.recordBackground(cmd);
     vulkan::ViewDesc view;
     view.camera = camera;
-    view.mode = app.options.mode;
+    view.mode = *vulkan::modeNamed(app.options.mode);
     status = app.renderer.recordDraws(cmd, view);
     app.target.endRendering(cmd);
     if (!status.ok()) return status;
@@ -169,10 +169,6 @@ bake::Status run(App& app) {
 }
 
 void addOptions(CLI::App& cli, Options& options) {
-    const std::map<std::string, vulkan::ShadingMode> modes{{"shaded", vulkan::ShadingMode::shaded},
-                                                           {"parts", vulkan::ShadingMode::parts},
-                                                           {"levels", vulkan::ShadingMode::levels},
-                                                           {"wire", vulkan::ShadingMode::wire}};
     cli.footer("Example: xgc_headless creature.xgc temple.xgc -o frames --path flyby --frames 90 --mode levels");
     cli.add_option("assets", options.inputs, ".xgc files")->required();
     cli.add_option("-o,--output", options.output, "Folder for frame_0000.png and on")->required();
@@ -186,8 +182,9 @@ void addOptions(CLI::App& cli, Options& options) {
     cli.add_option("--bands", options.bands, "Distances, in radii of the asset, at which levels 1, 2, ... begin")
         ->delimiter(',')
         ->excludes(error);
-    cli.add_option("--mode", options.mode, "shaded, parts, levels or wire")
-        ->transform(CLI::CheckedTransformer(modes).description(""));
+    cli.add_option("--mode", options.mode, "How it is coloured")
+        ->check(CLI::IsMember({"shaded", "parts", "levels", "wire"}))
+        ->capture_default_str();
     cli.add_option_function<std::string>(
            "--size",
            [&options](const std::string& text) {

@@ -99,7 +99,10 @@ TEST_CASE("a picture covers the pixels that the projected triangles cover") {
     const bake::Model cube = test::cube(3);
     const HandAsset asset(cube.positions, cube.triangles, 10);
     vulkan::ViewDesc view;
-    view.camera = vulkan::framingCamera({0, 0, 0}, 0.9f, {0.6f, 0.5f, 1}, {0, 1, 0}, 0.7f, 1.25f);
+    vulkan::Framing framing;
+    framing.towards = {0.6f, 0.5f, 1};
+    framing.aspect = 1.25f;
+    view.camera = vulkan::frame(cube.positions, framing);
     Stage stage(gpu, {}, singleSampled(200, 160));
     const vulkan::InstanceHandle instance = stage.place(asset.view, {}, view);
     const std::vector<uint8_t> levels(asset.view.patchCount(), 0);

@@ -18,5 +18,8 @@ void addBake(CLI::App& app, Run& run);
 void addInspect(CLI::App& app, Run& run);
 void addVerify(CLI::App& app, Run& run);
 void addSegment(CLI::App& app, Run& run);
+#ifdef XGC_HAS_VULKAN
+void addRender(CLI::App& app, Run& run);
+#endif
 
 } // namespace xgc::tool

@@ -23,6 +23,9 @@ int main(int argc, char** argv) {
     xgc::tool::addInspect(app, run);
     xgc::tool::addVerify(app, run);
     xgc::tool::addSegment(app, run);
+#ifdef XGC_HAS_VULKAN
+    xgc::tool::addRender(app, run);
+#endif
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

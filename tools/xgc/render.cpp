@@ -28,7 +28,7 @@ struct RenderOptions {
     float fovDegrees = 35;
     std::optional<float> errorPixels;
     std::optional<uint32_t> level;
-    vulkan::ShadingMode mode = vulkan::ShadingMode::shaded;
+    std::string mode = "shaded";
     bool json = false;
 };
 
@@ -73,16 +73,15 @@ bake::Status makeCamera(const RenderOptions& options, const AssetView& asset, Vk
     bake::Status status = parsePoint("--up", options.up, up);
     if (!status.ok()) return status;
     if (glm::dot(up, up) == 0) return bake::usageError("--up 0,0,0: expected a direction");
-    const float* c = asset.record->sphereCenter;
-    const float aspect = float(size.width) / float(size.height);
-    const auto framed = [&](const glm::vec3& towards) {
-        return vulkan::framingCamera({c[0], c[1], c[2]}, asset.record->sphereRadius, towards, up,
-                                     glm::radians(options.fovDegrees), aspect);
-    };
+    vulkan::Framing framing;
+    framing.up = up;
+    framing.fovY = glm::radians(options.fovDegrees);
+    framing.aspect = float(size.width) / float(size.height);
     // Three quarters from the front and a little above, whatever the up axis.
-    camera = framed({0, 0, 1});
-    const vulkan::Camera::Basis basis = camera.basis();
-    camera = framed(0.65f * basis.right + 0.38f * basis.up - basis.forward);
+    const vulkan::Camera::Basis front = vulkan::Camera{{0, 0, 1}, {0, 0, 0}, up}.basis();
+    framing.towards = 0.65f * front.right + 0.38f * front.up - front.forward;
+    const glm::vec3 origin(0);
+    camera = vulkan::frame(asset.positions.empty() ? std::span(&origin, 1) : asset.positions, framing);
     if (!options.target.empty()) status = parsePoint("--target", options.target, camera.target);
     if (status.ok() && !options.eye.empty()) status = parsePoint("--eye", options.eye, camera.eye);
     if (!status.ok()) return status;
@@ -211,7 +210,7 @@ bake::Status render(const RenderOptions& options) {
             fmt::format("{}: {} (element {})", options.input.string(), opened.message, opened.element));
     }
     vulkan::ViewDesc desc;
-    desc.mode = options.mode;
+    desc.mode = *vulkan::modeNamed(options.mode);
     desc.linePixels *= 2; // the picture is drawn at twice its size
     status = makeCamera(options, asset, size, desc.camera);
     if (!status.ok()) return status;
@@ -246,13 +245,9 @@ void addRender(CLI::App& app, Run& run) {
     CLI::Option* error = command->add_option("--error-pixels", options->errorPixels,
                                              "Coarsest levels whose error stays below so many pixels (default: 1)");
     command->add_option("--level", options->level, "One level for every patch")->excludes(error);
-    const std::map<std::string, vulkan::ShadingMode> modes{{"shaded", vulkan::ShadingMode::shaded},
-                                                           {"parts", vulkan::ShadingMode::parts},
-                                                           {"levels", vulkan::ShadingMode::levels},
-                                                           {"wire", vulkan::ShadingMode::wire}};
-    command->add_option("--mode", options->mode, "shaded, parts, levels or wire")
-        ->transform(CLI::CheckedTransformer(modes).description(""))
-        ->option_text("MODE");
+    command->add_option("--mode", options->mode, "How it is coloured")
+        ->check(CLI::IsMember({"shaded", "parts", "levels", "wire"}))
+        ->capture_default_str();
     command->add_flag("--json", options->json, "Print triangles, error and patches per level as JSON");
     command->callback([options, &run] { run = [options] { return render(*options); }; });
 }

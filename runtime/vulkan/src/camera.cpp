@@ -39,19 +39,37 @@ glm::mat4 Camera::worldToClip() const {
     return glm::transpose(glm::mat4(x, y, z, w));
 }
 
-Camera framingCamera(const glm::vec3& center, float radius, const glm::vec3& towards, const glm::vec3& up, float fovY,
-                     float aspect) {
-    // The narrower of the two half angles decides.
-    const float halfY = fovY / 2;
-    const float halfX = std::atan(std::tan(halfY) * aspect);
-    const float distance = std::max(radius, 1e-6f) / std::sin(std::min(halfX, halfY));
+// With x right, y up and z towards the eye, the eye at (ex, ey, d) sees a point where |x - ex| <= t (d - z): for the
+// right side t d + ex >= x + t z, for the left t d - ex >= -x + t z. So the extremes of +-x + t z over all points give
+// the least d and the ex in the middle; likewise for y.
+Camera frame(std::span<const glm::vec3> points, const Framing& framing) {
     Camera camera;
-    camera.target = center;
-    camera.eye = center + glm::normalize(towards) * distance;
-    camera.up = up;
-    camera.fovY = fovY;
-    camera.aspect = aspect;
-    camera.nearPlane = distance / 1000;
+    camera.up = framing.up;
+    camera.fovY = framing.fovY;
+    camera.aspect = framing.aspect;
+    camera.eye = framing.towards;
+    camera.target = glm::vec3(0);
+    const Camera::Basis basis = camera.basis();
+    const float ty = std::tan(framing.fovY / 2) / framing.margin, tx = ty * framing.aspect;
+
+    const glm::vec3 origin = points.front();
+    glm::vec3 low(0), high(0);  // x, y, z
+    glm::vec4 extremes(-1e30f); // right, left, up, down
+    for (const glm::vec3& p : points) {
+        const glm::vec3 o = p - origin;
+        const glm::vec3 v(glm::dot(o, basis.right), glm::dot(o, basis.up), -glm::dot(o, basis.forward));
+        low = glm::min(low, v);
+        high = glm::max(high, v);
+        extremes = glm::max(extremes, {v.x + tx * v.z, tx * v.z - v.x, v.y + ty * v.z, ty * v.z - v.y});
+    }
+    const float size = std::max(glm::length(high - low), 1e-6f);
+    const float depth =
+        std::max({(extremes.x + extremes.y) / (2 * tx), (extremes.z + extremes.w) / (2 * ty), high.z + 0.01f * size});
+    const glm::vec3 middle = origin + basis.right * ((extremes.x - extremes.y) / 2) +
+                             basis.up * ((extremes.z - extremes.w) / 2) - basis.forward * ((low.z + high.z) / 2);
+    camera.target = middle;
+    camera.eye = middle - basis.forward * (depth - (low.z + high.z) / 2);
+    camera.nearPlane = 0.001f * size;
     return camera;
 }
 

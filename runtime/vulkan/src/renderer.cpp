@@ -355,6 +355,14 @@ const DrawList& Renderer::drawList() const {
     return impl_->drawList;
 }
 
+std::optional<ShadingMode> modeNamed(std::string_view name) {
+    constexpr std::string_view kNames[] = {"shaded", "parts", "levels", "wire"};
+    for (uint32_t i = 0; i < std::size(kNames); ++i) {
+        if (kNames[i] == name) return ShadingMode(i);
+    }
+    return {};
+}
+
 // Capacities --------------------------------------------------------------------------------------------------------
 
 RendererConfig configFor(std::span<const AssetView* const> assets, uint32_t instances, const RendererConfig& base) {

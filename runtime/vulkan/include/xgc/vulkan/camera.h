@@ -3,6 +3,8 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
+#include <span>
+
 namespace xgc::vulkan {
 
 /// A perspective camera for Vulkan: right-handed world, y down in clip space, reversed depth with the far plane at
@@ -23,8 +25,16 @@ struct Camera {
     glm::mat4 worldToClip() const;
 };
 
-/// A camera that sees a whole sphere, just, from the direction `towards` (from its centre, any length).
-Camera framingCamera(const glm::vec3& center, float radius, const glm::vec3& towards, const glm::vec3& up, float fovY,
-                     float aspect);
+/// What a framing camera is told beside what it frames.
+struct Framing {
+    glm::vec3 towards{0, 0, 1}; ///< from what is framed to the eye, any length
+    glm::vec3 up{0, 1, 0};
+    float fovY = 0.7f;
+    float aspect = 1;
+    float margin = 1.06f; ///< 1: touches the edges of the picture
+};
+
+/// The nearest camera that sees all points, in the middle of the picture. At least one point.
+Camera frame(std::span<const glm::vec3> points, const Framing& framing);
 
 } // namespace xgc::vulkan

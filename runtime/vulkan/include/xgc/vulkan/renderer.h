@@ -6,6 +6,8 @@
 #include <xgc/vulkan/context.h>
 
 #include <memory>
+#include <optional>
+#include <string_view>
 
 namespace xgc::vulkan {
 
@@ -47,6 +49,8 @@ struct RendererConfig {
 RendererConfig configFor(std::span<const AssetView* const> assets, uint32_t instances, const RendererConfig& base = {});
 
 enum class ShadingMode : uint32_t { shaded, parts, levels, wire };
+/// By its name here; none for another word.
+std::optional<ShadingMode> modeNamed(std::string_view name);
 
 struct ViewDesc {
     Camera camera;
