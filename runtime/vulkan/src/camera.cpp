@@ -1,6 +1,9 @@
 #include <xgc/vulkan/camera.h>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -65,8 +68,20 @@ Camera frame(std::span<const glm::vec3> points, const Framing& framing) {
     const float size = std::max(glm::length(high - low), 1e-6f);
     const float depth =
         std::max({(extremes.x + extremes.y) / (2 * tx), (extremes.z + extremes.w) / (2 * ty), high.z + 0.01f * size});
-    const glm::vec3 middle = origin + basis.right * ((extremes.x - extremes.y) / 2) +
-                             basis.up * ((extremes.z - extremes.w) / 2) - basis.forward * ((low.z + high.z) / 2);
+    // One of the two directions may have room to spare: there the middle depends on the depth.
+    glm::vec2 eye((extremes.x - extremes.y) / 2, (extremes.z - extremes.w) / 2);
+    for (int pass = 0; pass < 6; ++pass) {
+        glm::vec2 least(1e30f), most(-1e30f);
+        for (const glm::vec3& p : points) {
+            const glm::vec3 o = p - origin;
+            const glm::vec2 across(glm::dot(o, basis.right), glm::dot(o, basis.up));
+            const glm::vec2 slope = (across - eye) / (depth + glm::dot(o, basis.forward));
+            least = glm::min(least, slope);
+            most = glm::max(most, slope);
+        }
+        eye += 0.5f * (least + most) * (depth - (low.z + high.z) / 2);
+    }
+    const glm::vec3 middle = origin + basis.right * eye.x + basis.up * eye.y - basis.forward * ((low.z + high.z) / 2);
     camera.target = middle;
     camera.eye = middle - basis.forward * (depth - (low.z + high.z) / 2);
     camera.nearPlane = 0.001f * size;
