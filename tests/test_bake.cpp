@@ -156,3 +156,31 @@ TEST_CASE("the report holds every stage, level and verdict") {
     for (const auto& verdict : json["verdicts"]) named |= verdict["what"].get<std::string>().starts_with("1 duplicate");
     CHECK(named);
 }
+
+TEST_CASE("flat normals hold a mesh up, say so, and give way to smooth ones") {
+    const Folder folder;
+    std::ofstream out(folder.path / "flat.obj"); // a sphere with a normal for each face
+    const Model sphere = test::sphere(8);
+    for (const glm::vec3& p : sphere.positions) out << "v " << p.x << ' ' << p.y << ' ' << p.z << '\n';
+    for (const glm::uvec3& t : sphere.triangles) {
+        const glm::vec3 n = sphere.positions[t.x] + sphere.positions[t.y] + sphere.positions[t.z];
+        out << "vn " << n.x << ' ' << n.y << ' ' << n.z << '\n';
+    }
+    for (size_t f = 0; f < sphere.triangles.size(); ++f) {
+        const glm::uvec3 t = sphere.triangles[f] + 1u;
+        out << "f " << t.x << "//" << f + 1 << ' ' << t.y << "//" << f + 1 << ' ' << t.z << "//" << f + 1 << '\n';
+    }
+    out.close();
+    BakeOptions options = optionsFor(folder, "out.xgc");
+    options.input = folder.path / "flat.obj";
+    options.parts = PartSource::none;
+    BakeReport kept, smoothed;
+    REQUIRE(bake::bake(options, kept).ok());
+    options.normals = NormalSource::smooth;
+    REQUIRE(bake::bake(options, smoothed).ok());
+    CHECK(kept.levels.size() == 1);
+    CHECK(std::any_of(kept.verdicts.begin(), kept.verdicts.end(),
+                      [](const Verdict& v) { return v.remedy.find("--normals smooth") != std::string::npos; }));
+    CHECK(smoothed.vertices == smoothed.positions);
+    CHECK(smoothed.levels.back().faces * 2 < smoothed.faces);
+}

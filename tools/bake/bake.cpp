@@ -34,6 +34,7 @@ Status cancelledStatus(const BakeOptions& options) {
 }
 
 Status prepareMesh(const BakeOptions& options, Work& work, BakeReport& report) {
+    if (options.normals == NormalSource::smooth) work.model.attributes.normals.clear();
     if (Status s = weld(work.model, options.weld, work.mesh, report.weld); !s.ok()) return s;
     work.model = Model{};
     work.topology = buildTopology(work.mesh);
@@ -99,6 +100,7 @@ std::string provenance(const BakeOptions& options) {
     json["parts"] = kSources[int(options.parts)];
     json["input"] = options.input.filename().string();
     json["weldTolerance"] = options.weld.tolerance;
+    json["normals"] = options.normals == NormalSource::smooth ? "smooth" : "keep";
     json["lockCurvature"] = options.hierarchy.lockCurvature;
     constexpr const char* kNorms[] = {"trace", "sum", "frobenius"};
     json["curvature"] = kNorms[int(options.hierarchy.curvature)];

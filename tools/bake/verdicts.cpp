@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace xgc::bake {
 namespace {
 
@@ -39,6 +41,18 @@ void judgeSegmentation(BakeReport& report) {
     }
 }
 
+/// Positions with several wedges are seams, which the preset locks.
+void judgeSeams(BakeReport& report) {
+    const double split = double(report.vertices) / std::max(1u, report.positions) - 1;
+    if (split < 0.5) return;
+    report.verdicts.push_back(
+        {Severity::warning,
+         fmt::format("{:.1f} vertices a position: normals or UVs are split nearly everywhere, and "
+                     "seams are locked",
+                     1 + split),
+         "weld", "bake with --normals smooth if the normals are flat by accident"});
+}
+
 /// The thesis's hierarchy keeps boundaries, creases and apices: say so where they hold up much of the mesh.
 void judgeFloor(BakeReport& report) {
     if (report.levels.size() < 2 || report.faces == 0) {
@@ -58,6 +72,7 @@ void judgeFloor(BakeReport& report) {
 
 void judge(BakeReport& report) {
     judgeInput(report);
+    judgeSeams(report);
     judgeSegmentation(report);
     judgeFloor(report);
 }

@@ -17,7 +17,7 @@ std::atomic<bool> interrupted{false};
 
 struct BakeArguments {
     std::string input, output, report;
-    std::string preset = "thesis", parts = "thesis", curvature = "trace";
+    std::string preset = "thesis", parts = "thesis", curvature = "trace", normals = "keep";
     uint32_t jobs = 0;
     bool quiet = false;
     bake::BakeOptions options;
@@ -55,6 +55,7 @@ bake::Status parse(const BakeArguments& arguments, bake::BakeOptions& options) {
     options.hierarchy.curvature = arguments.curvature == "sum"         ? bake::CurvatureNorm::sum
                                   : arguments.curvature == "frobenius" ? bake::CurvatureNorm::frobenius
                                                                        : bake::CurvatureNorm::trace;
+    options.normals = arguments.normals == "smooth" ? bake::NormalSource::smooth : bake::NormalSource::keep;
     options.input = arguments.input;
     options.output = arguments.output;
     if (options.output.extension() != ".xgc") {
@@ -120,6 +121,10 @@ void addBake(CLI::App& app, Run& run) {
         ->capture_default_str();
     bake->add_option("--curvature", arguments->curvature, "Norm that locks creases and apices")
         ->check(CLI::IsMember({"trace", "sum", "frobenius"}))
+        ->capture_default_str();
+    bake->add_option("--normals", arguments->normals,
+                     "keep the input's, or make smooth ones with creases at 60 degrees")
+        ->check(CLI::IsMember({"keep", "smooth"}))
         ->capture_default_str();
     bake->add_option("--weld", arguments->options.weld.tolerance, "Grid spacing of the weld, mesh units; 0: exact")
         ->check(CLI::NonNegativeNumber)

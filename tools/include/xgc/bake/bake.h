@@ -13,12 +13,19 @@ namespace xgc::bake {
 /// Where parts come from.
 enum class PartSource { thesis, none, material, component, labels };
 
+/// What becomes of the input's normals. Missing ones are made in any case.
+enum class NormalSource {
+    keep,  ///< as they are: normals that differ at a position split it into wedges, which the preset locks
+    smooth ///< made anew, with creases at 60 degrees
+};
+
 struct BakeOptions {
     std::filesystem::path input;
     std::filesystem::path output;
     PartSource parts = PartSource::thesis;
     std::filesystem::path labels; ///< the .seg file of PartSource::labels
     WeldOptions weld;
+    NormalSource normals = NormalSource::keep;
     ThesisSegmentOptions segment;
     ThesisHierarchyOptions hierarchy;
     /// Told a stage's name and finished fraction, on the calling thread.
