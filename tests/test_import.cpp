@@ -270,7 +270,9 @@ TEST_CASE("no truncation of a small file crashes, and none of a counted format p
         for (size_t length = 0; length < text.size(); ++length) {
             Model m;
             const Status s = importModelFromMemory(bytesOf(text).first(length), extension, m);
-            INFO(extension, " ", length, " of ", text.size(), " bytes, ", m.inputFaceCount, " faces");
+            const std::string where =
+                fmt::format("{} {} of {} bytes, {} faces", extension, length, text.size(), m.inputFaceCount);
+            INFO(where);
             CHECK((s.ok() || !s.message.empty()));
             if (s.ok() && counted) CHECK(m.inputFaceCount == whole); // only the last blanks or digits are missing
         }
