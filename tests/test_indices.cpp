@@ -118,15 +118,15 @@ TEST_CASE("patches built in one state close: every edge is used once in each dir
 }
 
 TEST_CASE("patches with more than 65,536 slots use wide slots and give the same surface") {
-    // Three patches a side is the least; the largest has 257 x 257 slots.
-    const auto built = xgc::test::patchedTorus({.patches = 3, .levels = 8});
+    // A patch has 257 x 257 slots.
+    const auto built = xgc::test::patchedTorus({.patches = 2, .levels = 8});
     const auto asset = xgc::test::openBuilt(built);
     REQUIRE(asset.failure == "");
     CHECK((asset.view.patches[0].flags & xgc::format::kWideSlots) != 0);
     CHECK(xgc::scratchCapacity(asset.view) == 257 * 257);
-    const std::vector<uint8_t> levels = {2, 0, 5, 8, 3, 1, 4, 6, 7};
+    const std::vector<uint8_t> levels = {2, 0, 5, 8};
     const auto truth = expected(built, levels);
-    for (uint32_t p = 0; p < 9; ++p) CHECK((drawn(asset.view, p, levels) == truth[p]));
+    for (uint32_t p = 0; p < 4; ++p) CHECK((drawn(asset.view, p, levels) == truth[p]));
 }
 
 TEST_CASE("the capacity falls with the level and is exact at level 0") {

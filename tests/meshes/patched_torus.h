@@ -21,7 +21,7 @@ struct Patched {
 };
 
 struct TorusShape {
-    uint32_t patches = 4; ///< around and along, at least 3
+    uint32_t patches = 4; ///< around and along, at least 2
     uint32_t levels = 3;  ///< a patch has 2^levels x 2^levels quads at level 0 and one at the last
     uint32_t materials = 2;
     uint32_t repeatedLevels = 0; ///< coarser levels that draw what the last one draws
