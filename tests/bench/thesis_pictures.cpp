@@ -1,4 +1,5 @@
 #include "bench/thesis_pictures.h"
+#include "meshes/builders.h"
 
 #include <xgc/bake/import.h>
 #include <xgc/bake/picture.h>
@@ -10,6 +11,11 @@ namespace xgc::test {
 using namespace bake;
 
 namespace {
+
+struct View {
+    glm::vec3 from{0.45f, 0.3f, 1};
+    glm::vec3 up{0, 1, 0};
+};
 
 struct Subject {
     Mesh mesh;
@@ -29,6 +35,19 @@ Status load(const std::filesystem::path& file, const ThesisHierarchyOptions& opt
     return {};
 }
 
+/// A box whose six sides are its parts: the builder makes them one after another.
+Status makeBox(Subject& s) {
+    constexpr uint32_t kQuads = 24;
+    WeldReport report;
+    if (Status status = weld(cube(kQuads), {}, s.mesh, report); !status.ok()) return status;
+    s.topology = buildTopology(s.mesh);
+    std::vector<uint32_t> sides;
+    for (uint32_t f = 0; f < s.mesh.faceCount(); ++f) sides.push_back(f / (2 * kQuads * kQuads));
+    s.parts = segmentByLabels(s.mesh, sides);
+    s.hierarchy = buildThesisHierarchy(s.mesh, s.topology, s.parts, {});
+    return {};
+}
+
 /// Levels of the patches from levels of the parts; those past the coarsest are the coarsest.
 std::vector<uint8_t> patchLevels(const Hierarchy& h, auto&& levelOfPart) {
     std::vector<uint8_t> levels;
@@ -38,7 +57,7 @@ std::vector<uint8_t> patchLevels(const Hierarchy& h, auto&& levelOfPart) {
 }
 
 /// The surface at some levels, drawn with its edges. `size`: of the mesh in the picture, 1 fills it.
-Image draw(const Subject& s, std::span<const uint8_t> levels, float size) {
+Image draw(const Subject& s, std::span<const uint8_t> levels, float size, const View& view = {}) {
     const Hierarchy& h = s.hierarchy;
     const DrawnSurface surface = drawSurface(s.mesh, h, levels);
     Mesh drawn;
@@ -62,6 +81,8 @@ Image draw(const Subject& s, std::span<const uint8_t> levels, float size) {
     options.width = 900;
     options.height = 900;
     options.lineWidth = 1;
+    options.viewFrom = view.from;
+    options.up = view.up;
     options.margin = 1 - 0.94f * size;
     return drawPicture(drawn, topology, colors, inner, options);
 }
@@ -72,11 +93,11 @@ Status write(const Image& image, const std::filesystem::path& folder, std::strin
 
 /// One picture a level, all parts alike.
 Status drawUniform(const std::filesystem::path& file, const std::filesystem::path& folder, std::string_view figure,
-                   std::initializer_list<uint32_t> levels) {
+                   std::initializer_list<uint32_t> levels, const View& view = {}) {
     Subject s;
     if (Status status = load(file, {}, false, s); !status.ok()) return status;
     for (const uint32_t level : levels) {
-        const Image image = draw(s, patchLevels(s.hierarchy, [&](uint32_t) { return level; }), 1);
+        const Image image = draw(s, patchLevels(s.hierarchy, [&](uint32_t) { return level; }), 1, view);
         if (Status status = write(image, folder, fmt::format("{}-level{}", figure, level)); !status.ok()) return status;
     }
     return {};
@@ -98,10 +119,8 @@ Status drawByDistance(const std::filesystem::path& file, const std::filesystem::
 }
 
 /// Parts at levels of their own, in turn from a list.
-Status drawMixed(const std::filesystem::path& file, const std::filesystem::path& folder, std::string_view name,
+Status drawMixed(const Subject& s, const std::filesystem::path& folder, std::string_view name,
                  const std::vector<uint32_t>& levels) {
-    Subject s;
-    if (Status status = load(file, {}, false, s); !status.ok()) return status;
     const Image image =
         draw(s, patchLevels(s.hierarchy, [&](uint32_t part) { return levels[part % levels.size()]; }), 1);
     return write(image, folder, name);
@@ -115,11 +134,18 @@ Status drawThesisPictures(const std::filesystem::path& data, const std::filesyst
     if (error) return systemError(fmt::format("{}: {}", folder.string(), error.message()));
     if (Status s = drawByDistance(data / "psb/off/381.off", folder); !s.ok()) return s;
     if (Status s = drawUniform(data / "psb/off/364.off", folder, "figure4.6", {0, 2, 4}); !s.ok()) return s;
-    if (Status s = drawUniform(data / "mesh/psb11.off", folder, "figure4.9", {0, 2, 4, 6}); !s.ok()) return s;
+    if (Status s =
+            drawUniform(data / "mesh/psb11.off", folder, "figure4.9", {0, 2, 4, 6}, {{0.3f, 1, 0.2f}, {0, 0, 1}});
+        !s.ok())
+        return s;
     if (Status s = drawUniform(data / "psb/off/101.off", folder, "figure4.10", {0, 2, 4, 6}); !s.ok()) return s;
-    if (Status s = drawMixed(data / "psb/off/61.off", folder, "figure4.11a", {0, 2, 3, 4}); !s.ok()) return s;
-    if (Status s = drawMixed(data / "psb/off/304.off", folder, "figure4.11b", {0, 2, 4}); !s.ok()) return s;
-    return drawMixed(data / "mesh/fandisk.obj", folder, "figure4.11c", {0, 1, 2, 3, 4, 5});
+    Subject airplane, bust, box;
+    if (Status s = load(data / "psb/off/61.off", {}, false, airplane); !s.ok()) return s;
+    if (Status s = drawMixed(airplane, folder, "figure4.11a", {0, 2, 3, 4}); !s.ok()) return s;
+    if (Status s = load(data / "psb/off/304.off", {}, false, bust); !s.ok()) return s;
+    if (Status s = drawMixed(bust, folder, "figure4.11b", {0, 2, 4}); !s.ok()) return s;
+    if (Status s = makeBox(box); !s.ok()) return s;
+    return drawMixed(box, folder, "figure4.11c", {0, 1, 2, 3, 4, 5});
 }
 
 } // namespace xgc::test
