@@ -26,6 +26,10 @@ const std::vector<Call> kAssetCalls = {
     {{"inspect", "{in}", "--json"}, ""},
     {{"verify", "{in}", "--states", "1"}, ""},
     {{"verify", "{in}", "--states", "1", "--json"}, ""},
+    {{"extract", "{in}", "-o", "{out}"}, ".obj"},
+#ifdef XGC_HAS_VULKAN
+    {{"render", "{in}", "-o", "{out}", "--size", "16x16"}, ".png"},
+#endif
 };
 
 const std::vector<Call> kLabelCalls = {

@@ -10,7 +10,12 @@ using Json = nlohmann::json;
 
 namespace {
 
-const std::vector<std::string> kSubcommands = {"bake", "segment", "inspect", "verify", "model"};
+const std::vector<std::string> kSubcommands = {
+    "bake",   "segment", "inspect", "verify", "model", "extract",
+#ifdef XGC_HAS_VULKAN
+    "render",
+#endif
+};
 
 void checkUsage(const std::vector<std::string>& arguments) {
     const RunResult run = runXgc(arguments);
@@ -34,6 +39,12 @@ TEST_CASE("misuse exits with 2 and says how") {
         checkUsage({sub});
         checkUsage({sub, "--no-such-option"});
     }
+}
+
+TEST_CASE("a word that is no subcommand or model is named") {
+    CHECK(runXgc({"frobnicate"}).err.find("'frobnicate'") != std::string::npos);
+    CHECK(runXgc({"model", "cow", "-o", "cow.glb"}).err.find("cow not in {creature,shaft,terrain,temple}") !=
+          std::string::npos);
 }
 
 TEST_CASE("every subcommand has help with an example") {

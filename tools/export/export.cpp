@@ -29,8 +29,8 @@ Status writeObj(const Model& model, const std::filesystem::path& file) {
     if (!named) return writeText(file, exports::objText(model, {}));
     std::filesystem::path library = file;
     library.replace_extension(".mtl");
-    const Status status = writeText(library, exports::mtlText(model));
-    return status.ok() ? writeText(file, exports::objText(model, library.filename().string())) : status;
+    const Status status = writeText(file, exports::objText(model, library.filename().string()));
+    return status.ok() ? writeText(library, exports::mtlText(model)) : status;
 }
 
 } // namespace

@@ -1,4 +1,5 @@
 #include "commands.h"
+#include "open_asset.h"
 
 #include <xgc/bake/asset_writer.h>
 #include <xgc/bake/export.h>
@@ -60,13 +61,10 @@ bake::Status chooseLevels(const Options& options, const AssetView& asset, std::v
 
 bake::Status extract(const Options& options) {
     bake::Status status = bake::checkExportName(options.output);
-    bake::AlignedBytes bytes;
-    if (status.ok()) status = bake::readFile(options.input, bytes);
+    OpenAsset opened;
+    if (status.ok()) status = openAsset(options.input, opened);
     if (!status.ok()) return status;
-    AssetView asset;
-    if (const Status opened = openAll(bytes.span(), asset); !opened.ok()) {
-        return bake::badInput(fmt::format("{}: {} (element {})", options.input, opened.message, opened.element));
-    }
+    const AssetView& asset = opened.view;
     std::vector<uint8_t> levels;
     bake::Model model;
     status = chooseLevels(options, asset, levels);

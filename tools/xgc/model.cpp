@@ -19,7 +19,7 @@ const std::map<std::string, bake::BundledModel> kModels = {
 };
 
 struct Options {
-    bake::BundledModel model{};
+    std::string model;
     std::string output;
     uint64_t faces = 60000;
     bool quiet = false;
@@ -32,7 +32,7 @@ bake::Status makeAndWrite(const Options& options) {
     }
     bake::Status status = bake::checkExportName(options.output);
     if (!status.ok()) return status;
-    const bake::Model model = bake::makeModel(options.model, uint32_t(options.faces));
+    const bake::Model model = bake::makeModel(kModels.at(options.model), uint32_t(options.faces));
     status = bake::exportModel(model, options.output);
     if (status.ok() && !options.quiet) {
         fmt::print(stderr, "{}: {} faces, {} vertices, {} materials\n", options.output, model.triangles.size(),
@@ -48,7 +48,7 @@ void addModel(CLI::App& app, Run& run) {
     const auto options = std::make_shared<Options>();
     sub->add_option("model", options->model, "creature, shaft, terrain or temple")
         ->required()
-        ->transform(CLI::CheckedTransformer(kModels, CLI::ignore_case).description(""));
+        ->check(CLI::IsMember(std::vector<std::string>{"creature", "shaft", "terrain", "temple"}));
     sub->add_option("-o,--output", options->output, "File to write: .glb, .obj or .ply")->required();
     sub->add_option("--faces", options->faces, "About how many triangles")->capture_default_str();
     sub->add_flag("--quiet", options->quiet, "Print nothing but errors");

@@ -1,4 +1,5 @@
 #include "commands.h"
+#include "open_asset.h"
 
 #include <xgc/bake/asset_writer.h>
 #include <xgc/bake/image.h>
@@ -200,15 +201,13 @@ bake::Status render(const RenderOptions& options) {
     VkExtent2D size{};
     bake::Status status = parseSize(options.size, size);
     if (!status.ok()) return status;
-    bake::AlignedBytes bytes;
-    status = bake::readFile(options.input, bytes);
-    if (!status.ok()) return status;
-    AssetView asset;
-    const Status opened = openAll(bytes.span(), asset);
-    if (!opened.ok()) {
-        return bake::badInput(
-            fmt::format("{}: {} (element {})", options.input.string(), opened.message, opened.element));
+    if (options.output.extension() != ".png") {
+        return bake::usageError(fmt::format("{}: the picture must end in .png", options.output.string()));
     }
+    OpenAsset opened;
+    status = openAsset(options.input.string(), opened);
+    if (!status.ok()) return status;
+    const AssetView& asset = opened.view;
     vulkan::ViewDesc desc;
     desc.mode = *vulkan::modeNamed(options.mode);
     desc.linePixels *= 2; // the picture is drawn at twice its size
