@@ -1,11 +1,16 @@
 #include "meshes/builders.h"
 
+#include <xgc/bake/asset_writer.h>
+#include <xgc/bake/bake.h>
 #include <xgc/bake/export.h>
+#include <xgc/bake/from_asset.h>
 #include <xgc/bake/import.h>
 #include <xgc/bake/models.h>
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <fstream>
 #include <map>
@@ -204,7 +209,8 @@ TEST_CASE("an .obj keeps positions exactly, faces in order within a material, an
     }
     CHECK(corners[0].size() == 2);
     for (const auto& [name, list] : corners[0]) {
-        CAPTURE(name);
+        const std::string material = name;
+        CAPTURE(material);
         REQUIRE(corners[1][name].size() == list.size());
         bool same = true;
         for (size_t i = 0; i < list.size(); ++i) same = same && sameBits(list[i], corners[1][name][i]);
@@ -244,4 +250,107 @@ TEST_CASE("an extension that cannot be written is a usage error that names those
 TEST_CASE("a model without faces and a folder that is not there are refused") {
     CHECK(exportModel(Model{}, scratch("empty.glb")).outcome == Outcome::badInput);
     CHECK(!exportModel(xgc::test::cube(1), scratch("no/such/folder.glb")).ok());
+}
+
+namespace {
+
+struct Baked {
+    Model source;
+    AlignedBytes bytes;
+    xgc::AssetView asset;
+};
+
+/// The temple as an asset with a part a material.
+Baked bakedTemple() {
+    Baked baked;
+    baked.source = makeModel(BundledModel::temple, 3000);
+    BakeOptions options;
+    options.input = scratch("baked.glb");
+    options.output = scratch("baked.xgc");
+    options.parts = PartSource::material;
+    REQUIRE(exportModel(baked.source, options.input).ok());
+    BakeReport report;
+    const Status status = bake(options, report);
+    CAPTURE(status.message);
+    REQUIRE(status.ok());
+    REQUIRE(readFile(options.output, baked.bytes).ok());
+    REQUIRE(xgc::openAll(baked.bytes.span(), baked.asset).ok());
+    return baked;
+}
+
+/// Corners of all triangles, each triangle from its least corner on, sorted.
+using Corner = std::array<float, 3>;
+std::vector<std::array<Corner, 3>> sortedTriangles(const Model& model) {
+    std::vector<std::array<Corner, 3>> out;
+    for (const glm::uvec3 t : model.triangles) {
+        std::array<Corner, 3> corners;
+        for (int k = 0; k < 3; ++k) {
+            const glm::vec3 p = model.positions[t[k]];
+            corners[k] = {p.x, p.y, p.z};
+        }
+        std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+        out.push_back(corners);
+    }
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+} // namespace
+
+TEST_CASE("level 0 of an asset is the input's triangles, with its materials and close attributes") {
+    const Baked baked = bakedTemple();
+    Model back;
+    REQUIRE(modelFromAsset(baked.asset, std::vector<uint8_t>(baked.asset.patchCount(), 0), back).ok());
+    CHECK(sortedTriangles(back) == sortedTriangles(baked.source));
+    std::map<std::string, size_t> faces[2];
+    for (const uint32_t m : baked.source.triangleMaterial) ++faces[0][baked.source.materials[m].name];
+    for (const uint32_t m : back.triangleMaterial) ++faces[1][back.materials[m].name];
+    CHECK(faces[0] == faces[1]);
+
+    // Rows: each has a source row of the same position, uv and colour (8 bits) with nearly its normal.
+    std::multimap<Corner, uint32_t> rows;
+    const auto corner = [](glm::vec3 p) { return Corner{p.x, p.y, p.z}; };
+    for (uint32_t r = 0; r < baked.source.positions.size(); ++r) rows.emplace(corner(baked.source.positions[r]), r);
+    size_t matched = 0;
+    for (uint32_t r = 0; r < back.positions.size(); ++r) {
+        const auto [first, last] = rows.equal_range(corner(back.positions[r]));
+        matched += std::any_of(first, last, [&](const auto& entry) {
+            const Attributes &a = baked.source.attributes, &b = back.attributes;
+            const uint32_t s = entry.second;
+            const glm::vec4 color = a.colors[0][s] - b.colors[0][r];
+            return a.uvs[0][s] == b.uvs[0][r] && glm::dot(a.normals[s], b.normals[r]) > 0.99999f &&
+                   glm::dot(color, color) < 4 * 0.0021f * 0.0021f;
+        });
+    }
+    CHECK(matched == back.positions.size());
+}
+
+TEST_CASE("coarser levels of an asset have fewer triangles, all over used rows") {
+    const Baked baked = bakedTemple();
+    Model fine, coarse;
+    const std::vector<uint8_t> last(baked.asset.patchCount(), uint8_t(baked.asset.levelCount() - 1));
+    REQUIRE(modelFromAsset(baked.asset, std::vector<uint8_t>(last.size(), 0), fine).ok());
+    REQUIRE(modelFromAsset(baked.asset, last, coarse).ok());
+    CHECK(coarse.triangles.size() < fine.triangles.size());
+    std::vector<char> used(coarse.positions.size(), 0);
+    for (const glm::uvec3 t : coarse.triangles) {
+        for (int k = 0; k < 3; ++k) used[t[k]] = 1;
+    }
+    CHECK(std::find(used.begin(), used.end(), 0) == used.end());
+    CHECK(coarse.attributes.normals.size() == coarse.positions.size());
+}
+
+TEST_CASE("a state of the wrong length or beyond the levels is a usage error that names the limits") {
+    const Baked baked = bakedTemple();
+    Model out;
+    std::vector<uint8_t> levels(baked.asset.patchCount() + 1, 0);
+    Status status = modelFromAsset(baked.asset, levels, out);
+    CHECK(status.outcome == Outcome::usage);
+    CHECK(status.message.find(std::to_string(baked.asset.patchCount()) + " patches") != std::string::npos);
+    levels.pop_back();
+    levels.back() = uint8_t(baked.asset.levelCount());
+    status = modelFromAsset(baked.asset, levels, out);
+    CHECK(status.outcome == Outcome::usage);
+    CHECK(status.message.find("0 to " + std::to_string(baked.asset.levelCount() - 1)) != std::string::npos);
+    CHECK(out.triangles.empty());
 }

@@ -271,12 +271,15 @@ TEST_CASE("models are the same bits on any machine and compiler") {
         {BundledModel::terrain, {0xcacdfca1e0e52bf0, 0xf78f912301b0810f}},
         {BundledModel::temple, {0xa2c61b5d1ebbf10d, 0xd30c7cf28299de9a}},
     };
-    for (const auto& [which, hashes] : golden) {
-        CAPTURE(int(which));
+    for (const auto& entry : golden) {
+        const BundledModel which = entry.first;
         const uint64_t coarse = hashOf(makeModel(which, 1000)), fine = hashOf(makeModel(which, 45000));
-        if (std::getenv("XGC_PRINT_GOLDEN"))
-            std::printf("{0x%016llx, 0x%016llx}\n", (unsigned long long)coarse, (unsigned long long)fine);
-        CHECK(coarse == hashes[0]);
-        CHECK(fine == hashes[1]);
+        CAPTURE(int(which));
+        if (std::getenv("XGC_PRINT_GOLDEN")) {
+            std::printf("{0x%016llx, 0x%016llx}\n", static_cast<unsigned long long>(coarse),
+                        static_cast<unsigned long long>(fine));
+        }
+        CHECK(coarse == entry.second[0]);
+        CHECK(fine == entry.second[1]);
     }
 }
