@@ -43,7 +43,7 @@ struct ViewRecord {
 
 /// An instance: where it stands and where its vertex streams lie. Address 0: the asset has none.
 struct InstanceRecord {
-    vec4 toWorld[3]; ///< rows
+    vec4 toWorld[3];   ///< rows
     Address positions; ///< float3 each row
     Address normals;   ///< octahedral snorm16x2
     Address colors;    ///< linear RGBA
@@ -55,7 +55,7 @@ struct InstanceRecord {
 struct DrawRecord {
     uint instance;
     uint material;
-    uint partColor; ///< below kPartColorCount, unlike those of adjacent parts
+    uint partColor;      ///< below kPartColorCount, unlike those of adjacent parts
     float levelFraction; ///< level / the asset's coarsest
 };
 
