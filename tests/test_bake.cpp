@@ -84,11 +84,8 @@ TEST_CASE("a bake of a closed mesh keeps every promise, whatever gives the parts
         REQUIRE(openAll(bytes.span(), asset).ok());
         Model model;
         REQUIRE(importModel(options.input, model).ok());
-        Mesh mesh;
-        WeldReport weldReport;
-        REQUIRE(weld(model, {}, mesh, weldReport).ok());
         VerifyReport verified;
-        verifySource(asset, mesh, verified);
+        verifySource(asset, test::welded(model), verified);
         VerifyOptions verifyOptions;
         verifyOptions.states = 20;
         verifyOptions.errorStates = 8;

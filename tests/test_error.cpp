@@ -36,13 +36,6 @@ std::vector<Triangle> soup(uint32_t count, Numbers& numbers) {
     return triangles;
 }
 
-Mesh welded(const Model& model) {
-    Mesh mesh;
-    WeldReport report;
-    REQUIRE(weld(model, {}, mesh, report).ok());
-    return mesh;
-}
-
 /// A grid of one patch in which the centre vertex, lifted by `height`, collapses at level 1 into its neighbour.
 Hierarchy collapseCentre(Mesh& mesh, float height) {
     const auto at = [&](float x, float y) {
@@ -124,14 +117,14 @@ TEST_CASE("the tree finds what brute force finds, and so does Embree") {
 }
 
 TEST_CASE("a collapsed bump costs 1.3 times its height, a flat collapse nothing") {
-    Mesh flat = welded(test::grid(4));
+    Mesh flat = test::welded(test::grid(4));
     const Hierarchy none = collapseCentre(flat, 0.0f);
     REQUIRE(checkHierarchy(flat, none).ok());
     const PatchErrors still = estimateErrors(flat, none);
     CHECK(still.values[0] == 0.0f);
     CHECK(still.values[1] < 1e-7f);
 
-    Mesh bump = welded(test::grid(4));
+    Mesh bump = test::welded(test::grid(4));
     const Hierarchy one = collapseCentre(bump, 0.1f);
     const PatchErrors errors = estimateErrors(bump, one);
     CHECK(errors.estimate);
@@ -140,7 +133,7 @@ TEST_CASE("a collapsed bump costs 1.3 times its height, a flat collapse nothing"
 }
 
 TEST_CASE("a measurement that is told to stop stops") {
-    Mesh mesh = welded(test::grid(4));
+    Mesh mesh = test::welded(test::grid(4));
     const Hierarchy h = collapseCentre(mesh, 0.1f);
     int calls = 0;
     estimateErrors(mesh, h, [&](double) { return ++calls < 1; });

@@ -10,9 +10,7 @@ using namespace xgc::bake;
 namespace {
 
 Mesh withNormals(const Model& model) {
-    Mesh mesh;
-    WeldReport report;
-    REQUIRE(weld(model, {}, mesh, report).ok());
+    Mesh mesh = test::welded(model);
     addMissingNormals(mesh, buildTopology(mesh));
     REQUIRE(mesh.attributes.normals.size() == mesh.wedgePosition.size());
     return mesh;

@@ -21,13 +21,6 @@ struct Baked {
     AssetView view;
 };
 
-Mesh welded(const Model& model) {
-    Mesh mesh;
-    WeldReport report;
-    REQUIRE(weld(model, {}, mesh, report).ok());
-    return mesh;
-}
-
 void layOut(Baked& baked, const Segmentation& parts, const Hierarchy& hierarchy, const PatchErrors& errors) {
     std::vector<std::byte> bytes;
     const bake::Status status = layOutAsset(baked.mesh, parts, hierarchy, errors, true, "{}", bytes);
@@ -40,7 +33,7 @@ void layOut(Baked& baked, const Segmentation& parts, const Hierarchy& hierarchy,
 void bakeSphere(Baked& baked, bool honest) {
     Model model = test::sphere(10);
     for (glm::vec3& p : model.positions) p *= 1 + 0.1f * p.x * p.y;
-    baked.mesh = welded(model);
+    baked.mesh = test::welded(model);
     const Segmentation parts = test::slabs(baked.mesh, 3);
     const Hierarchy h = buildThesisHierarchy(baked.mesh, buildTopology(baked.mesh), parts, {});
     PatchErrors errors = estimateErrors(baked.mesh, h);
@@ -50,7 +43,7 @@ void bakeSphere(Baked& baked, bool honest) {
 
 /// A hierarchy whose boundaries collapse too, and which cares for no flips.
 void bakeToy(Baked& baked, const Model& model) {
-    baked.mesh = welded(model);
+    baked.mesh = test::welded(model);
     const Segmentation parts = test::slabs(baked.mesh, 4);
     const Hierarchy h = test::toyHierarchy(baked.mesh, parts, {});
     layOut(baked, parts, h, estimateErrors(baked.mesh, h));

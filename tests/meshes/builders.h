@@ -88,4 +88,12 @@ inline bake::Model grid(uint32_t n) {
     return modelOf(std::move(p), std::move(t));
 }
 
+/// The model welded by exact position.
+inline bake::Mesh welded(const bake::Model& model) {
+    bake::Mesh mesh;
+    bake::WeldReport report;
+    if (!bake::weld(model, {}, mesh, report).ok()) std::abort(); // a test's own mesh is broken
+    return mesh;
+}
+
 } // namespace xgc::test

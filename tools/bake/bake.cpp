@@ -98,6 +98,10 @@ std::string provenance(const BakeOptions& options) {
     json["preset"] = "thesis";
     constexpr const char* kSources[] = {"thesis", "none", "material", "component", "file"};
     json["parts"] = kSources[int(options.parts)];
+    if (options.parts == PartSource::thesis) {
+        json["partsCount"] = options.segment.partsCount;
+        json["flatTolerance"] = fmt::format("{}", options.segment.flatTolerance);
+    }
     json["input"] = options.input.filename().string();
     json["weldTolerance"] = options.weld.tolerance;
     json["normals"] = options.normals == NormalSource::smooth ? "smooth" : "keep";
