@@ -221,10 +221,11 @@ TEST_CASE("boundaries, creases and apices stay where they are") {
         }
         CHECK(locked.size() > 30);
         while (x.simplifyAll().collapses > 0) {
-            for (const auto& [v, position] : locked) {
-                CHECK(!x.vertices()[v].ghost);
-                CHECK(x.vertices()[v].firstUse != kNone);
-                CHECK(x.vertices()[v].position == position);
+            for (const auto& was : locked) {
+                const XgcMesh::Vertex& is = x.vertices()[was.first];
+                CHECK(!is.ghost);
+                CHECK(is.firstUse != kNone);
+                CHECK(is.position == was.second);
             }
         }
         CHECK(x.faceCount() < s.mesh.faceCount());
