@@ -84,6 +84,9 @@ TEST_CASE("a bake of a closed mesh keeps every promise, whatever gives the parts
         REQUIRE(openAll(bytes.span(), asset).ok());
         Model model;
         REQUIRE(importModel(options.input, model).ok());
+        const auto provenance = nlohmann::json::parse(asset.provenance);
+        CHECK(provenance["input"] == "in.off");
+        CHECK(provenance["inputHash"].get<std::string>().size() == 16);
         VerifyReport verified;
         verifySource(asset, test::welded(model), verified);
         VerifyOptions verifyOptions;

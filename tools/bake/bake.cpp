@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <xxhash.h>
 
 #include <algorithm>
 
@@ -91,7 +92,15 @@ Status measure(const BakeOptions& options, Work& work, BakeReport& report) {
     return {};
 }
 
-/// Settings and tool version, without paths, times or thread counts: the same bake gives the same bytes.
+/// XXH64 of the model file's bytes; empty where it cannot be read again.
+std::string hashOf(const std::filesystem::path& file) {
+    AlignedBytes bytes;
+    if (!readFile(file, bytes).ok()) return {};
+    return fmt::format("{:016x}", XXH64(bytes.span().data(), bytes.size, 0));
+}
+
+/// Settings, hash of the input and tool version, without paths, times or thread counts: the same bake gives the same
+/// bytes.
 std::string provenance(const BakeOptions& options) {
     nlohmann::ordered_json json;
     json["tool"] = "xgc " XGC_VERSION;
@@ -103,6 +112,7 @@ std::string provenance(const BakeOptions& options) {
         json["flatTolerance"] = fmt::format("{}", options.segment.flatTolerance);
     }
     json["input"] = options.input.filename().string();
+    json["inputHash"] = hashOf(options.input);
     json["weldTolerance"] = options.weld.tolerance;
     json["normals"] = options.normals == NormalSource::smooth ? "smooth" : "keep";
     json["lockCurvature"] = options.hierarchy.lockCurvature;
