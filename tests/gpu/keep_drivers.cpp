@@ -2,6 +2,8 @@
 // cannot name them. Sanitized programs keep them loaded and say whose leaks are not ours.
 #include <dlfcn.h>
 
+#include <initializer_list>
+
 extern "C" {
 extern int xgcKeepDrivers; ///< the linker is told to keep it, and so this file
 int xgcKeepDrivers = 1;
