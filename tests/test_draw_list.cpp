@@ -15,16 +15,16 @@ namespace {
 uint64_t allocations = 0;
 }
 
-// Every allocation of the program is counted.
-void* operator new(size_t bytes) {
+// Every allocation of the program is counted. Not inlined: g++ would see memory of `new` given to `free`.
+[[gnu::noinline]] void* operator new(size_t bytes) {
     ++allocations;
     if (void* p = std::malloc(bytes ? bytes : 1)) return p;
     std::abort();
 }
-void operator delete(void* p) noexcept {
+[[gnu::noinline]] void operator delete(void* p) noexcept {
     std::free(p);
 }
-void operator delete(void* p, size_t) noexcept {
+[[gnu::noinline]] void operator delete(void* p, size_t) noexcept {
     std::free(p);
 }
 
