@@ -31,6 +31,7 @@ struct RenderOptions {
     std::optional<uint32_t> level;
     std::string mode = "shaded";
     bool json = false;
+    bool quiet = false;
 };
 
 /// Numbers between separators, all of them finite.
@@ -187,7 +188,7 @@ void report(const RenderOptions& options, const AssetView& asset, Levels levels,
         fmt::print("{{\"triangles\":{},\"errorPixels\":{},\"distanceRadii\":{:.4g},\"levels\":[{}],\"draws\":{}}}\n",
                    studio.renderer.stats().triangles, pixels, radii, fmt::join(patches, ","),
                    studio.renderer.drawList().draws().size());
-    } else {
+    } else if (!options.quiet) {
         fmt::print(stderr, "{}: {} triangles, error {} pixels, from {:.4g} radii, on {}\n", options.output.string(),
                    studio.renderer.stats().triangles, std::isfinite(error) ? pixels : "unbounded", radii,
                    studio.device.name());
@@ -248,6 +249,7 @@ void addRender(CLI::App& app, Run& run) {
         ->check(CLI::IsMember({"shaded", "parts", "levels", "wire"}))
         ->capture_default_str();
     command->add_flag("--json", options->json, "Print triangles, error and patches per level as JSON");
+    command->add_flag("--quiet", options->quiet, "Print nothing but errors");
     command->callback([options, &run] { run = [options] { return render(*options); }; });
 }
 
