@@ -8,6 +8,7 @@
 
 #include <xgc/indices.h>
 
+#include <atomic>
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
@@ -24,21 +25,23 @@
 #endif
 
 namespace {
-size_t allocationCount = 0; // of one thread: drivers' threads are not counted either
-}
+// Atomic, or a compiler that knows what `new` does may read it too early.
+std::atomic<size_t> allocationCount = 0;
+} // namespace
 
 #ifndef XGC_NO_COUNT
 extern "C" char __executable_start, etext;
-void* operator new(size_t bytes) {
+// Not inlined: the return address is to be that of whoever allocates.
+[[gnu::noinline]] void* operator new(size_t bytes) {
     const char* caller = static_cast<const char*>(__builtin_return_address(0));
     if (caller >= &__executable_start && caller < &etext) ++allocationCount;
     if (void* memory = std::malloc(bytes)) return memory;
     throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept {
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
     std::free(memory);
 }
-void operator delete(void* memory, size_t) noexcept {
+[[gnu::noinline]] void operator delete(void* memory, size_t) noexcept {
     std::free(memory);
 }
 #endif
