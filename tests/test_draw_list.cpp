@@ -12,20 +12,51 @@
 #include <string>
 
 namespace {
-uint64_t allocations = 0;
-}
 
-// Every allocation of the program is counted. Not inlined: g++ would see memory of `new` given to `free`.
-[[gnu::noinline]] void* operator new(size_t bytes) {
+uint64_t allocations = 0;
+
+/// Not inlined: g++ would see memory of `new` given to `free`.
+[[gnu::noinline]] void* countedAllocate(size_t bytes) {
     ++allocations;
     if (void* p = std::malloc(bytes ? bytes : 1)) return p;
     std::abort();
 }
-[[gnu::noinline]] void operator delete(void* p) noexcept {
+[[gnu::noinline]] void release(void* p) {
     std::free(p);
 }
-[[gnu::noinline]] void operator delete(void* p, size_t) noexcept {
-    std::free(p);
+
+} // namespace
+
+// Every allocation of the program is counted. All forms are replaced: a sanitizer brings each of them.
+void* operator new(size_t bytes) {
+    return countedAllocate(bytes);
+}
+void* operator new[](size_t bytes) {
+    return countedAllocate(bytes);
+}
+void* operator new(size_t bytes, const std::nothrow_t&) noexcept {
+    return countedAllocate(bytes);
+}
+void* operator new[](size_t bytes, const std::nothrow_t&) noexcept {
+    return countedAllocate(bytes);
+}
+void operator delete(void* p) noexcept {
+    release(p);
+}
+void operator delete[](void* p) noexcept {
+    release(p);
+}
+void operator delete(void* p, size_t) noexcept {
+    release(p);
+}
+void operator delete[](void* p, size_t) noexcept {
+    release(p);
+}
+void operator delete(void* p, const std::nothrow_t&) noexcept {
+    release(p);
+}
+void operator delete[](void* p, const std::nothrow_t&) noexcept {
+    release(p);
 }
 
 namespace {
