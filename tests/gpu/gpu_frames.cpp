@@ -14,6 +14,7 @@
 #include <cstring>
 #include <new>
 #include <random>
+#include <string>
 
 // Counts allocations that code of this program makes: drivers and layers allocate as they like.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -147,9 +148,10 @@ TEST_CASE("from inside a closed surface no mix of levels lets the background thr
     }
 }
 
-TEST_CASE("frames in flight with changing levels and views are clean, and allocate nothing") {
-    const Gpu gpu;
-    if (!gpu.present) return;
+namespace {
+
+/// Draws frames in flight with changing levels and views. Returns the allocations of the frames after the first ones.
+size_t drawFrames(const Gpu& gpu) {
     const OpenAsset torus = openBuilt(patchedTorus({}));
     REQUIRE(torus.failure == "");
     const AssetView& asset = torus.view;
@@ -187,10 +189,41 @@ TEST_CASE("frames in flight with changing levels and views are clean, and alloca
         XGC_REQUIRE_OK(submitted);
         changed += stage.renderer.stats().patchesChanged;
     }
-    CHECK(allocations == 0);
     CHECK(changed > 1000);
+    return allocations;
+}
+
+/// Keeps layers away while it lives: they share instances of std templates with this program and so would seem to be
+/// it.
+class WithoutLayers {
+public:
+    WithoutLayers() {
+        if (const char* layers = std::getenv(kName)) saved_ = layers;
+        unsetenv(kName);
+    }
+    ~WithoutLayers() { setenv(kName, saved_.c_str(), 1); }
+    WithoutLayers(const WithoutLayers&) = delete;
+    WithoutLayers& operator=(const WithoutLayers&) = delete;
+
+private:
+    static constexpr const char* kName = "VK_INSTANCE_LAYERS";
+    std::string saved_;
+};
+
+} // namespace
+
+TEST_CASE("frames in flight with changing levels and views are clean") {
+    const Gpu gpu;
+    if (gpu.present) drawFrames(gpu);
+}
+
+TEST_CASE("frames allocate nothing") {
 #ifdef XGC_NO_COUNT
     MESSAGE("SKIPPED: allocations are not counted under sanitizers");
+#else
+    const WithoutLayers guard;
+    const Gpu gpu;
+    if (gpu.present) CHECK(drawFrames(gpu) == 0);
 #endif
 }
 
