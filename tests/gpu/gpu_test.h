@@ -35,6 +35,7 @@ public:
         desc.allocation = allocation;
         const Status status = device.create(desc);
         if (!status.ok()) {
+            if (std::getenv("XGC_REQUIRE_DEVICE")) FAIL("no device, and XGC_REQUIRE_DEVICE is set: " << text(status));
             MESSAGE("SKIPPED: " << text(status));
             return;
         }
