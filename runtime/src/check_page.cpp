@@ -8,7 +8,7 @@
 // - collapse levels fall within each vertex range, so the rows alive at a level are a prefix;
 // - a parent has a lower slot than its child (or the child's own, in rows that never collapse), so one pass
 //   forward resolves all chains;
-// - a parent collapses no earlier, in a domain that includes the child's;
+// - a parent lies in a domain that includes the child's (in the same group, a lower slot cannot collapse earlier);
 // - all patches of a domain agree on the parents of its rows: the first patch of the domain tells them.
 //
 // Slots of a patch are numbered range by range, its domains rising and then its interior; `Slots` turns a slot
@@ -99,7 +99,6 @@ bool includes(std::span<const uint32_t> wide, std::span<const uint32_t> narrow) 
 /// A parent against its child, told by the first patch of the child's domain (or by the patch of an interior).
 Status checkStep(const AssetView& v, const Slots& slots, Place child, Place parent) {
     const uint8_t level = v.collapseLevels[child.row];
-    if (v.collapseLevels[parent.row] < level) return corrupt("vertex row whose parent collapses first", child.row);
     if (!v.birthLevels.empty() && v.birthLevels[parent.row] > level)
         return corrupt("vertex row whose parent is born after it collapses", child.row);
     // A domain of the patch holds the patch, so the interior's set is included in any of them.

@@ -5,8 +5,8 @@
 #include <tuple>
 
 // Order of domains and of vertex rows. Rows lie in groups (the domains, then the interiors of the patches), each by
-// collapse level descending, so that the rows alive at a level are a prefix. A parent never collapses before its
-// child, so only among equal levels parents must be put before children by hand.
+// collapse level descending, so that the rows alive at a level are a prefix. Within a group a parent never collapses
+// before its child, so only among equal levels parents must be put before children by hand.
 
 namespace xgc::bake::layout {
 namespace {

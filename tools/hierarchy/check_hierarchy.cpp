@@ -95,7 +95,8 @@ Status checkParent(const Hierarchy& h, uint32_t wedge, std::vector<uint32_t>& pa
     if (parent >= h.wedgePosition.size()) return broken("no parent, wedge", wedge);
     const uint32_t q = h.wedgePosition[parent];
     if (q == p) return broken("a vertex is its own parent, wedge", wedge);
-    if (h.collapseLevel[q] < h.collapseLevel[p]) return broken("the parent collapses first, wedge", wedge);
+    if (h.domain[q] == h.domain[p] && h.collapseLevel[q] < h.collapseLevel[p])
+        return broken("the parent collapses first, wedge", wedge);
     if (h.birthLevel[q] > h.collapseLevel[p])
         return broken("the parent is born after its child collapses, wedge", wedge);
     if (h.domain[q] != h.domain[p] && !includes(h.domainPatches[h.domain[q]], h.domainPatches[h.domain[p]]))

@@ -1,11 +1,11 @@
 #include <xgc/bake/thesis_hierarchy.h>
 
 #include "hierarchy/average_attributes.h"
+#include "hierarchy/first_domains.h"
 
 #include <algorithm>
 #include <cassert>
 #include <chrono>
-#include <map>
 
 namespace xgc::bake {
 
@@ -21,45 +21,6 @@ private:
 
 HierarchyLevelReport levelReport(const XgcMesh& mesh, const XgcPass& pass, double seconds) {
     return {mesh.faceCount(), pass.collapses, pass.linkRefused, pass.flipRefused, pass.wedgeRefused, seconds};
-}
-
-/// Gives each position the set of patches of its faces.
-void assignDomains(const Mesh& mesh, Hierarchy& h) {
-    std::vector<std::pair<uint32_t, uint32_t>> incidences; // position, patch
-    incidences.reserve(3 * mesh.faces.size());
-    std::vector<uint32_t> only(mesh.positions.size(), kNone); // the first patch seen
-    for (uint32_t f = 0; f < mesh.faceCount(); ++f) {
-        const glm::uvec3 corners = mesh.facePositions(f);
-        for (int k = 0; k < 3; ++k) {
-            uint32_t& first = only[corners[k]];
-            if (first == kNone) first = h.facePatch[f];
-            if (first != h.facePatch[f]) incidences.emplace_back(corners[k], h.facePatch[f]);
-        }
-    }
-    std::sort(incidences.begin(), incidences.end());
-    incidences.erase(std::unique(incidences.begin(), incidences.end()), incidences.end());
-    std::map<std::vector<uint32_t>, uint32_t> known;
-    std::vector<uint32_t> domainOfPatch(h.patches.size(), kNone);
-    const auto intern = [&](const std::vector<uint32_t>& patches) {
-        const auto [entry, isNew] = known.try_emplace(patches, uint32_t(h.domainPatches.size()));
-        if (isNew) h.domainPatches.push_back(patches);
-        return entry->second;
-    };
-    size_t next = 0;
-    for (uint32_t p = 0; p < mesh.positions.size(); ++p) {
-        const uint32_t first = only[p] == kNone ? 0 : only[p]; // no face: any will do
-        if (next == incidences.size() || incidences[next].first != p) {
-            uint32_t& domain = domainOfPatch[first];
-            if (domain == kNone) domain = intern({first});
-            h.domain[p] = domain;
-            continue;
-        }
-        std::vector<uint32_t> patches{first};
-        for (; next < incidences.size() && incidences[next].first == p; ++next)
-            patches.push_back(incidences[next].second);
-        std::sort(patches.begin(), patches.end());
-        h.domain[p] = intern(patches);
-    }
 }
 
 /// Adds the vertices that interior collapses made, children first.
@@ -80,20 +41,6 @@ void addMadeVertices(const XgcMesh& x, Hierarchy& h) {
 
 } // namespace
 
-PatchAssignment patchesOfParts(const Mesh& mesh, const Segmentation& parts) {
-    assert(parts.facePart.size() == mesh.faces.size());
-    PatchAssignment out;
-    std::map<std::pair<uint32_t, uint32_t>, uint32_t> known;
-    for (uint32_t f = 0; f < mesh.faceCount(); ++f) known[{parts.facePart[f], mesh.faceMaterial[f]}] = 0;
-    for (auto& [key, patch] : known) {
-        patch = uint32_t(out.patches.size());
-        out.patches.push_back({key.first, key.second});
-    }
-    out.facePatch.resize(mesh.faces.size());
-    for (uint32_t f = 0; f < mesh.faceCount(); ++f) out.facePatch[f] = known[{parts.facePart[f], mesh.faceMaterial[f]}];
-    return out;
-}
-
 Hierarchy convertToHierarchy(const Mesh& mesh, const XgcMesh& simplified, const PatchAssignment& assignment) {
     Hierarchy h;
     for (uint32_t s = 0; s < simplified.segmentCount(); ++s)
@@ -108,7 +55,7 @@ Hierarchy convertToHierarchy(const Mesh& mesh, const XgcMesh& simplified, const 
     h.patches = assignment.patches;
     h.facePatch = assignment.facePatch;
     h.levelThreshold.assign(h.levelCount, 0);
-    assignDomains(mesh, h);
+    assignFirstDomains(mesh, h);
     addMadeVertices(simplified, h);
     for (const Genealogy& g : simplified.genealogies()) {
         const uint32_t gone = g.type == CollapseType::interior ? 2 : 1;

@@ -19,7 +19,8 @@ struct Patch {
 /// It refers to the mesh that it was built from; rows past the mesh's were made by the builder (midpoints).
 ///
 /// Rules, checked by `checkHierarchy`:
-/// - a parent wedge's position has a collapse level at or above the child's, and a domain that includes it;
+/// - a parent wedge's position has a domain that includes the child's and, where it is the same, a collapse level at or
+///   above the child's;
 /// - all wedges of a position have parents of one position;
 /// - a face that has a position twice in some state has a wedge twice: it can be told to be degenerate by either;
 /// - the mesh's positions and wedges come first, as they are, with birth level 0;

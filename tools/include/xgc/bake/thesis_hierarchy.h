@@ -1,6 +1,6 @@
 #pragma once
 
-#include <xgc/bake/hierarchy.h>
+#include <xgc/bake/patches.h>
 #include <xgc/bake/xgc_mesh.h>
 
 namespace xgc::bake {
@@ -12,13 +12,6 @@ struct ThesisHierarchyOptions {
     EdgeOrder order = EdgeOrder::flattestFirst;
     uint32_t maxLevels = 32; ///< levels above 0, at most; building stops where no part collapses any more
 };
-
-/// One patch for each part and material that meet in a face, ordered by part, then material.
-struct PatchAssignment {
-    std::vector<Patch> patches;
-    std::vector<uint32_t> facePatch;
-};
-PatchAssignment patchesOfParts(const Mesh& mesh, const Segmentation& parts);
 
 /// Builds the thesis's hierarchy (chapter 4) with XgcMesh and converts it: patches are its segments. A patch that
 /// stalls before the others stays as it is at the levels that follow. `report`: an entry a level.

@@ -1,0 +1,199 @@
+#include "meshes/builders.h"
+
+#include <xgc/bake/default_hierarchy.h>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <random>
+
+using namespace xgc;
+using namespace xgc::bake;
+
+namespace {
+
+/// Patches grown breadth-first from random faces.
+PatchAssignment randomPatches(const Mesh& mesh, const Topology& topology, uint32_t count, uint32_t seed) {
+    std::mt19937 random(seed);
+    PatchAssignment out;
+    out.facePatch.assign(mesh.faces.size(), kNone);
+    std::vector<uint32_t> queue;
+    for (uint32_t f = 0; queue.size() < mesh.faces.size(); ++f) {
+        const uint32_t seedFace =
+            out.patches.size() < count ? uint32_t(random() % mesh.faceCount()) : f % mesh.faceCount();
+        if (out.facePatch[seedFace] != kNone) continue;
+        out.facePatch[seedFace] = std::min(uint32_t(out.patches.size()), count - 1);
+        if (out.patches.size() < count) out.patches.push_back({0, 0});
+        queue.push_back(seedFace);
+        if (out.patches.size() < count) continue;
+        for (size_t i = 0; i < queue.size(); ++i) {
+            for (int k = 0; k < 3; ++k) {
+                for (const uint32_t g : topology.facesOfEdge(topology.faceEdges[queue[i]][k])) {
+                    if (out.facePatch[g] != kNone) continue;
+                    out.facePatch[g] = out.facePatch[queue[i]];
+                    queue.push_back(g);
+                }
+            }
+        }
+    }
+    return out;
+}
+
+glm::dvec3 normalOf(const Hierarchy& h, const glm::uvec3& p) {
+    const glm::dvec3 a(h.positions[p.x]);
+    return glm::cross(glm::dvec3(h.positions[p.y]) - a, glm::dvec3(h.positions[p.z]) - a);
+}
+
+struct StateFaults {
+    uint32_t flips = 0, odd = 0, degenerate = 0;
+};
+
+/// What is wrong with a state; `borders`: whether the input has any.
+StateFaults faultsOf(const Mesh& mesh, const Hierarchy& h, std::span<const uint8_t> levels) {
+    StateFaults faults;
+    const DrawnSurface surface = drawSurface(mesh, h, levels);
+    std::map<std::pair<uint32_t, uint32_t>, uint32_t> uses;
+    for (size_t i = 0; i < surface.triangles.size(); ++i) {
+        const glm::uvec3 t = surface.triangles[i];
+        const glm::uvec3 p(h.wedgePosition[t.x], h.wedgePosition[t.y], h.wedgePosition[t.z]);
+        const glm::dvec3 n = normalOf(h, p);
+        faults.flips += glm::dot(n, normalOf(h, mesh.facePositions(surface.face[i]))) < 0;
+        faults.degenerate += n == glm::dvec3(0);
+        for (int k = 0; k < 3; ++k) ++uses[std::minmax(p[k], p[(k + 1) % 3])];
+    }
+    for (const auto& [edge, count] : uses) faults.odd += count % 2;
+    return faults;
+}
+
+struct Subject {
+    const char* name;
+    Model model;
+    bool closed = true;
+};
+
+/// A sphere whose upper half has texture coordinates of its own: a seam around the equator.
+Model seamedSphere(uint32_t n) {
+    Model model = test::sphere(n);
+    const auto rows = uint32_t(model.positions.size());
+    model.attributes.uvs[0].resize(rows);
+    for (uint32_t r = 0; r < rows; ++r) model.attributes.uvs[0][r] = {model.positions[r].x, model.positions[r].y};
+    for (glm::uvec3& t : model.triangles) {
+        if (model.positions[t.x].z + model.positions[t.y].z + model.positions[t.z].z < 0) continue;
+        for (int k = 0; k < 3; ++k) {
+            const glm::vec3 p = model.positions[t[k]];
+            model.attributes.uvs[0].push_back({p.x + 5, p.y});
+            model.positions.push_back(p);
+            t[k] = uint32_t(model.positions.size()) - 1;
+        }
+    }
+    return model;
+}
+
+std::vector<Subject> subjects() {
+    return {{"sphere", test::sphere(6)},
+            {"cube", test::cube(5)},
+            {"seamed sphere", seamedSphere(6)},
+            {"grid", test::grid(9), false}};
+}
+
+} // namespace
+
+TEST_CASE("in every state of small meshes nothing is flipped, torn or degenerate") {
+    for (const Subject& s : subjects()) {
+        CAPTURE(s.name);
+        const Mesh mesh = test::welded(s.model);
+        const Topology topology = buildTopology(mesh);
+        for (const uint32_t patchCount : {1u, 2u, 3u}) {
+            CAPTURE(patchCount);
+            HierarchyOptions options;
+            options.firstError = 0.02; // few levels, so that all states can be tried
+            options.maxLevels = 7;
+            const PatchAssignment patches = randomPatches(mesh, topology, patchCount, patchCount);
+            const Hierarchy h = buildDefaultHierarchy(mesh, topology, patches, options);
+            REQUIRE(checkHierarchy(mesh, h).ok());
+            CHECK(h.levelCount > 2);
+            std::vector<uint8_t> levels(h.patchCount(), 0);
+            const uint32_t borders = faultsOf(mesh, h, levels).odd;
+            CHECK((borders == 0) == s.closed);
+            StateFaults sum;
+            for (bool more = true; more;) {
+                const StateFaults f = faultsOf(mesh, h, levels);
+                sum.flips += f.flips;
+                sum.degenerate += f.degenerate;
+                sum.odd += s.closed ? f.odd : 0;
+                more = false;
+                for (uint8_t& level : levels) { // the next state
+                    if (++level < h.levelCount) {
+                        more = true;
+                        break;
+                    }
+                    level = 0;
+                }
+            }
+            CHECK(sum.flips == 0);
+            CHECK(sum.degenerate == 0);
+            CHECK(sum.odd == 0);
+        }
+    }
+}
+
+TEST_CASE("closed meshes fall to a few faces, however they are cut") {
+    const Mesh mesh = test::welded(test::sphere(20));
+    const Topology topology = buildTopology(mesh);
+    for (const uint32_t patchCount : {1u, 10u, 40u}) {
+        std::vector<HierarchyLevelReport> report;
+        buildDefaultHierarchy(mesh, topology, randomPatches(mesh, topology, patchCount, 1), {}, &report);
+        CAPTURE(patchCount);
+        CHECK(report.back().faces <= 40);
+    }
+}
+
+TEST_CASE("locked vertices stay, important ones go later") {
+    const Mesh mesh = test::welded(test::sphere(12));
+    const Topology topology = buildTopology(mesh);
+    HierarchyOptions options;
+    options.vertexImportance.assign(mesh.positions.size(), 1);
+    for (uint32_t p = 0; p < mesh.positions.size(); ++p) {
+        if (mesh.positions[p].z > 0.5f) options.vertexImportance[p] = std::numeric_limits<float>::infinity();
+        if (mesh.positions[p].z < -0.5f) options.vertexImportance[p] = 4;
+    }
+    const Hierarchy h = buildDefaultHierarchy(mesh, topology, randomPatches(mesh, topology, 3, 1), options);
+    double plain = 0, important = 0;
+    uint32_t plainCount = 0, importantCount = 0;
+    for (uint32_t p = 0; p < mesh.positions.size(); ++p) {
+        if (mesh.positions[p].z > 0.5f) {
+            CHECK(h.collapseLevel[p] == kNeverCollapses);
+        } else if (mesh.positions[p].z < -0.5f) {
+            important += std::min<uint8_t>(h.collapseLevel[p], 30);
+            ++importantCount;
+        } else {
+            plain += std::min<uint8_t>(h.collapseLevel[p], 30);
+            ++plainCount;
+        }
+    }
+    CHECK(important / importantCount > plain / plainCount + 2);
+}
+
+TEST_CASE("patches are bounded, whole, and never cross parts or materials") {
+    Model model = test::grid(60);
+    model.materials.resize(2);
+    for (size_t t = 0; t < model.triangles.size(); ++t) model.triangleMaterial[t] = t % 120 < 30;
+    const Mesh mesh = test::welded(model);
+    const Topology topology = buildTopology(mesh);
+    const PatchAssignment split = splitPatches(mesh, topology, segmentNone(mesh), 500);
+    std::vector<uint32_t> faces(split.patches.size(), 0);
+    for (uint32_t f = 0; f < mesh.faceCount(); ++f) {
+        CHECK(split.patches[split.facePatch[f]].material == mesh.faceMaterial[f]);
+        ++faces[split.facePatch[f]];
+    }
+    CHECK(split.patches.size() >= 7200 / 500);
+    CHECK(split.patches.size() <= 30);
+    for (const uint32_t count : faces) {
+        CHECK(count > 0);
+        CHECK(count <= 1000);
+    }
+    CHECK(std::is_sorted(split.patches.begin(), split.patches.end(),
+                         [](const Patch& a, const Patch& b) { return a.material < b.material; }));
+}

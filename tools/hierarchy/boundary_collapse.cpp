@@ -1,0 +1,258 @@
+#include "hierarchy/boundary_collapse.h"
+
+#include <limits>
+
+namespace xgc::bake {
+
+namespace {
+
+constexpr size_t kWidestDomain = 16;
+
+} // namespace
+
+BoundaryCollapser::BoundaryCollapser(SurfaceState& state, std::vector<InteriorCollapser>& interiors)
+    : state_(state), interiors_(interiors), stamp_(state.isBoundary.size(), 0), target_(state.isBoundary.size(), kNone),
+      blocked_(state.isBoundary.size()), check_(state) {
+    for (uint32_t p = 0; p < state.isBoundary.size(); ++p) {
+        if (state.isBoundary[p]) markDirty(p);
+    }
+}
+
+void BoundaryCollapser::run(uint32_t level, double limit) {
+    std::sort(dirty_.begin(), dirty_.end());
+    dirty_.erase(std::unique(dirty_.begin(), dirty_.end()), dirty_.end());
+    for (const uint32_t v : dirty_) {
+        if (state_.parent[v] != kNone) continue;
+        blocked_[v] = {};
+        evaluate(v);
+    }
+    dirty_.clear();
+    while (queue_.hasBelow(limit)) {
+        const CollapseQueue::Entry entry = queue_.pop();
+        const uint32_t v = entry.vertex;
+        if (entry.stamp != stamp_[v]) continue;
+        const Outcome outcome = tryCollapse(v, target_[v], level);
+        if (outcome == Outcome::done) continue;
+        if (outcome == Outcome::heldByMixed) held_.push_back(v);
+        blocked_[v] = {entry.cost, target_[v]};
+        evaluate(v);
+    }
+}
+
+void BoundaryCollapser::runWidening(uint32_t level, double limit) {
+    widening_ = true;
+    for (const uint32_t v : std::exchange(held_, {})) markDirty(v);
+    run(level, limit);
+    held_.clear();
+    widening_ = false;
+}
+
+void BoundaryCollapser::gatherStar(uint32_t vertex, std::vector<StarFace>& star) const {
+    star.clear();
+    state_.forGroupCorners(vertex, [&](uint32_t patch, uint32_t c) {
+        const PatchMesh& mesh = state_.patches[patch];
+        const uint32_t cn = PatchMesh::next(c), cp = PatchMesh::previous(c);
+        const uint32_t n = state_.uniformAt(mesh, cn), p = state_.uniformAt(mesh, cp);
+        if (n == vertex || p == vertex || n == p) return;
+        star.push_back({patch, n, p, state_.uniformWedgeAt(mesh, c), state_.uniformWedgeAt(mesh, cn),
+                        state_.uniformWedgeAt(mesh, cp)});
+    });
+}
+
+void BoundaryCollapser::gatherEdges(const std::vector<StarFace>& star, std::vector<StarEdge>& edges) const {
+    struct Use {
+        uint32_t to, patch;
+        bool operator<(const Use& other) const { return to != other.to ? to < other.to : patch < other.patch; }
+    };
+    thread_local std::vector<Use> uses;
+    uses.clear();
+    for (const StarFace& f : star) {
+        uses.push_back({f.next, f.patch});
+        uses.push_back({f.previous, f.patch});
+    }
+    std::sort(uses.begin(), uses.end());
+    edges.clear();
+    for (size_t i = 0; i < uses.size(); ++i) {
+        if (i == 0 || uses[i].to != uses[i - 1].to) edges.push_back({uses[i].to, 0, false});
+        ++edges.back().faces;
+        edges.back().severalPatches |= edges.back().faces > 1 && uses[i].patch != uses[i - 1].patch;
+    }
+}
+
+/// Along borders (and where sheets meet) if it has any; else along boundaries of patches; else, once the patches beside
+/// it have died, or where it is of one patch, to any boundary vertex.
+void BoundaryCollapser::evaluate(uint32_t vertex) {
+    gatherStar(vertex, star_);
+    gatherEdges(star_, edges_);
+    int strongest = 0;
+    const auto strength = [](const StarEdge& e) { return e.faces != 2 ? 2 : e.severalPatches ? 1 : 0; };
+    for (const StarEdge& e : edges_) strongest = std::max(strongest, strength(e));
+    const Blocked blocked = blocked_[vertex];
+    double best = std::numeric_limits<double>::infinity();
+    uint32_t bestTarget = kNone;
+    const Quadric& quadric = state_.quadrics[vertex];
+    for (const StarEdge& e : edges_) {
+        if (strength(e) < strongest || !state_.isBoundary[e.to]) continue;
+        const double cost = quadric.mean(state_.point(e.to)) * state_.costScale[vertex];
+        if (cost < blocked.cost || (cost == blocked.cost && e.to <= blocked.target)) continue;
+        if (cost > best || (cost == best && e.to >= bestTarget)) continue;
+        best = cost;
+        bestTarget = e.to;
+    }
+    ++stamp_[vertex];
+    target_[vertex] = bestTarget;
+    if (best < std::numeric_limits<double>::infinity()) queue_.push({best, vertex, stamp_[vertex]});
+}
+
+BoundaryCollapser::Outcome BoundaryCollapser::tryCollapse(uint32_t vertex, uint32_t target, uint32_t level) {
+    gatherStar(vertex, star_);
+    if (!isLinked(target)) {
+        ++counts_.linkRefused;
+        return Outcome::refused;
+    }
+    if (!mapWedges(vertex, target)) {
+        ++counts_.wedgeRefused;
+        return Outcome::refused;
+    }
+    const Outcome outcome = checkStates(vertex, target, level);
+    if (outcome != Outcome::done) {
+        ++counts_.flipRefused;
+        return outcome;
+    }
+    collapse(vertex, target, level);
+    return outcome;
+}
+
+/// The map comes from the dying triangles of the uniform state; all wedges that any state shows must have a target.
+bool BoundaryCollapser::mapWedges(uint32_t vertex, uint32_t target) {
+    wedges_.clear();
+    bool fits = true;
+    for (const StarFace& f : star_) {
+        if (f.next == target) fits &= wedges_.add(f.wedge, f.nextWedge);
+        if (f.previous == target) fits &= wedges_.add(f.wedge, f.previousWedge);
+    }
+    if (!fits) return false;
+    state_.forGroupCorners(vertex, [&](uint32_t patch, uint32_t c) {
+        fits = fits && wedges_(state_.uniformWedgeAt(state_.patches[patch], c)) != kNone;
+    });
+    return fits;
+}
+
+/// Lk(v) and Lk(u) meet in Lk(vu) alone; but a border may close over a hole of three edges.
+bool BoundaryCollapser::isLinked(uint32_t target) {
+    thread_local std::vector<uint32_t> opposite;
+    opposite.clear();
+    for (const StarFace& f : star_) {
+        if (f.next == target) opposite.push_back(f.previous);
+        if (f.previous == target) opposite.push_back(f.next);
+    }
+    std::sort(opposite.begin(), opposite.end());
+    if (opposite.empty() || std::adjacent_find(opposite.begin(), opposite.end()) != opposite.end()) return false;
+    const auto isOpposite = [&](uint32_t x) { return std::binary_search(opposite.begin(), opposite.end(), x); };
+
+    gatherEdges(star_, edges_);
+    gatherStar(target, otherStar_);
+    thread_local std::vector<StarEdge> others;
+    gatherEdges(otherStar_, others);
+    uint32_t holes = 0;
+    for (size_t i = 0, j = 0; i < edges_.size() && j < others.size();) {
+        if (edges_[i].to != others[j].to) {
+            ++(edges_[i].to < others[j].to ? i : j);
+            continue;
+        }
+        if (!isOpposite(edges_[i].to)) {
+            const bool closesHole = opposite.size() == 1 && edges_[i].faces == 1 && others[j].faces == 1;
+            if (!closesHole || ++holes > 1) return false;
+        }
+        ++i;
+        ++j;
+    }
+    // A triangle that stays must not fall on another.
+    for (const StarFace& f : star_) {
+        if (!isOpposite(f.next) || !isOpposite(f.previous)) continue;
+        for (const StarFace& g : otherStar_) {
+            if ((g.next == f.next && g.previous == f.previous) || (g.next == f.previous && g.previous == f.next))
+                return false;
+        }
+    }
+    return true;
+}
+
+BoundaryCollapser::Outcome BoundaryCollapser::checkStates(uint32_t vertex, uint32_t target, uint32_t level) {
+    domain_ = state_.domain[vertex];
+    Outcome outcome = Outcome::done;
+    state_.forGroupCorners(vertex, [&](uint32_t patch, uint32_t c) {
+        if (outcome != Outcome::done) return;
+        const PatchMesh& mesh = state_.patches[patch];
+        if (state_.uniformAt(mesh, PatchMesh::next(c)) == vertex) return;
+        if (state_.uniformAt(mesh, PatchMesh::previous(c)) == vertex) return;
+        for (;;) {
+            const StateCheck::Move move = {vertex, target, level, domain_, true};
+            const StateCheck::Verdict verdict = check_.check(patch, c / 3, move, wedges_);
+            if (verdict == StateCheck::Verdict::good) return;
+            outcome = verdict == StateCheck::Verdict::badInUniform ? Outcome::refused : Outcome::heldByMixed;
+            if (outcome == Outcome::refused || !widening_ || !widen()) return;
+            outcome = Outcome::done;
+        }
+    });
+    return outcome;
+}
+
+/// Takes the failing domain into the step's own that makes the smaller set.
+bool BoundaryCollapser::widen() {
+    uint32_t best = domain_;
+    for (const uint32_t d : check_.failingDomains) {
+        const uint32_t united = state_.domains.unite(domain_, d);
+        if (united == domain_) continue;
+        if (best == domain_ || state_.domains[united].size() < state_.domains[best].size()) best = united;
+    }
+    if (best == domain_ || state_.domains[best].size() > kWidestDomain) return false;
+    domain_ = best;
+    return true;
+}
+
+void BoundaryCollapser::collapse(uint32_t vertex, uint32_t target, uint32_t level) {
+    around_.assign(1, target);
+    state_.forGroupCorners(vertex, [&](uint32_t patch, uint32_t c) {
+        const PatchMesh& mesh = state_.patches[patch];
+        for (const uint32_t x : {PatchMesh::next(c), PatchMesh::previous(c)}) {
+            const uint32_t p = state_.positionAt(mesh, x);
+            if (!state_.isBoundary[p]) {
+                interiors_[patch].markDirty(mesh.corner[x]);
+            } else if (state_.representative[p] != vertex) {
+                around_.push_back(state_.representative[p]);
+            }
+        }
+    });
+
+    state_.collapseLevel[vertex] = uint8_t(level);
+    state_.parent[vertex] = target;
+    state_.domain[vertex] = domain_;
+    state_.domain[target] = state_.domains.unite(state_.domain[target], domain_);
+    state_.quadrics[target].add(state_.quadrics[vertex]);
+    for (const uint32_t w : state_.wedgesOf(vertex)) {
+        const uint32_t to = wedges_(w);
+        state_.wedgeParent[w] = to == kNone ? wedges_.any() : to; // no face draws it any more
+    }
+    members_.clear();
+    state_.forGroup(vertex, [&](uint32_t m) { members_.push_back(m); });
+    for (const uint32_t m : members_) {
+        state_.representative[m] = target;
+        for (const uint32_t w : state_.wedgesOf(m)) {
+            uint32_t& r = state_.wedgeRepresentative[w];
+            const uint32_t to = wedges_(r);
+            r = to == kNone ? wedges_.any() : to;
+        }
+    }
+    std::swap(state_.groupNext[vertex], state_.groupNext[target]);
+    ++stamp_[vertex];
+    ++counts_.collapses;
+    std::sort(around_.begin(), around_.end());
+    around_.erase(std::unique(around_.begin(), around_.end()), around_.end());
+    for (const uint32_t v : around_) {
+        blocked_[v] = {};
+        evaluate(v);
+    }
+}
+
+} // namespace xgc::bake

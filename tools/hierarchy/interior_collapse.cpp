@@ -1,0 +1,238 @@
+#include "hierarchy/interior_collapse.h"
+
+#include <limits>
+
+namespace xgc::bake {
+
+InteriorCollapser::InteriorCollapser(SurfaceState& state, uint32_t patch)
+    : state_(state), mesh_(state.patches[patch]), patch_(patch), stamp_(mesh_.vertexCount(), 0),
+      target_(mesh_.vertexCount(), kNone), blocked_(mesh_.vertexCount()), isDirty_(mesh_.vertexCount(), 0),
+      check_(state), marks_(mesh_.vertexCount(), 0) {
+    for (uint32_t v = 0; v < mesh_.vertexCount(); ++v) {
+        if (!isBoundary(v)) markDirty(v);
+    }
+}
+
+void InteriorCollapser::run(uint32_t level, double limit) {
+    for (const uint32_t v : dirty_) {
+        isDirty_[v] = 0;
+        if (isBoundary(v) || mesh_.head[v] == kNone) continue;
+        blocked_[v] = {};
+        evaluate(v);
+    }
+    dirty_.clear();
+    while (queue_.hasBelow(limit)) {
+        const CollapseQueue::Entry entry = queue_.pop();
+        const uint32_t v = entry.vertex;
+        if (entry.stamp != stamp_[v]) continue;
+        const uint32_t target = target_[v];
+        const Outcome outcome = tryCollapse(v, target, level);
+        if (outcome == Outcome::done) continue;
+        if (outcome == Outcome::heldByMixed && isBoundary(target)) held_.emplace_back(v, entry.cost);
+        block(v, target, entry.cost);
+    }
+}
+
+void InteriorCollapser::promote(double limit) {
+    for (const auto& [v, cost] : held_) {
+        if (mesh_.head[v] == kNone || isBoundary(v) || cost > limit) continue;
+        state_.isBoundary[mesh_.position[v]] = 1;
+        ++stamp_[v];
+        touched_.push_back(mesh_.position[v]);
+        mesh_.forCorners(v, [&](uint32_t c) {
+            const uint32_t n = mesh_.corner[PatchMesh::next(c)];
+            if (!isBoundary(n)) markDirty(n);
+        });
+    }
+    held_.clear();
+}
+
+/// At a boundary vertex that has itself collapsed: the larger of the costs at where it was and at where it is.
+double InteriorCollapser::costOf(uint32_t vertex, uint32_t target) const {
+    const uint32_t v = mesh_.position[vertex], w = mesh_.position[target];
+    const uint32_t r = state_.representative[w];
+    double cost = state_.quadrics[v].mean(state_.point(w));
+    if (r != w) cost = std::max(cost, state_.quadrics[v].mean(state_.point(r)));
+    return cost * state_.costScale[v];
+}
+
+/// Finds the cheapest target that was not refused, and queues the vertex.
+void InteriorCollapser::evaluate(uint32_t vertex) {
+    const Blocked blocked = blocked_[vertex];
+    double best = std::numeric_limits<double>::infinity();
+    uint32_t bestTarget = kNone;
+    mesh_.forCorners(vertex, [&](uint32_t c) {
+        const uint32_t target = mesh_.corner[PatchMesh::next(c)];
+        const double cost = costOf(vertex, target);
+        if (cost < blocked.cost || (cost == blocked.cost && target <= blocked.target)) return;
+        if (cost > best || (cost == best && target >= bestTarget)) return;
+        best = cost;
+        bestTarget = target;
+    });
+    ++stamp_[vertex];
+    target_[vertex] = bestTarget;
+    if (best < std::numeric_limits<double>::infinity()) queue_.push({best, vertex, stamp_[vertex]});
+}
+
+void InteriorCollapser::block(uint32_t vertex, uint32_t target, double cost) {
+    blocked_[vertex] = {cost, target};
+    evaluate(vertex);
+}
+
+InteriorCollapser::Outcome InteriorCollapser::tryCollapse(uint32_t vertex, uint32_t target, uint32_t level) {
+    if (!mapWedges(vertex, target)) {
+        ++counts_.wedgeRefused;
+        return Outcome::refused;
+    }
+    const Outcome linked = checkLinks(vertex, target);
+    if (linked == Outcome::refused) {
+        ++counts_.linkRefused;
+        return Outcome::refused;
+    }
+    Outcome outcome = checkStates(vertex, target, level);
+    if (outcome == Outcome::done) outcome = linked;
+    if (outcome != Outcome::done) {
+        ++counts_.flipRefused;
+        return outcome;
+    }
+    collapse(vertex, target, level);
+    return outcome;
+}
+
+bool InteriorCollapser::mapWedges(uint32_t vertex, uint32_t target) {
+    wedges_.clear();
+    bool fits = true;
+    mesh_.forCorners(vertex, [&](uint32_t c) {
+        const uint32_t n = PatchMesh::next(c), p = PatchMesh::previous(c);
+        if (mesh_.corner[n] == target) fits &= wedges_.add(mesh_.wedge[c], mesh_.wedge[n]);
+        if (mesh_.corner[p] == target) fits &= wedges_.add(mesh_.wedge[c], mesh_.wedge[p]);
+    });
+    if (!fits) return false;
+    mesh_.forCorners(vertex, [&](uint32_t c) { fits &= wedges_(mesh_.wedge[c]) != kNone; });
+    return fits;
+}
+
+/// Lk(v) and Lk(w) meet in Lk(vw) alone, the two vertices opposite to the edge: in the patch mesh, for the states in
+/// which the boundary is not collapsed, and in the uniform state.
+InteriorCollapser::Outcome InteriorCollapser::checkLinks(uint32_t vertex, uint32_t target) {
+    const bool inPatch = isLinkedInPatch(vertex, target);
+    bool nearBoundary = isBoundary(target);
+    mesh_.forCorners(vertex, [&](uint32_t c) { nearBoundary |= isBoundary(mesh_.corner[PatchMesh::next(c)]); });
+    if (!nearBoundary) return inPatch ? Outcome::done : Outcome::refused;
+    if (!isLinkedInUniform(vertex, target)) return Outcome::refused;
+    return inPatch ? Outcome::done : Outcome::heldByMixed;
+}
+
+bool InteriorCollapser::isLinkedInPatch(uint32_t vertex, uint32_t target) {
+    ++mark_;
+    uint32_t shared = 0, common = 0, valence = 0;
+    mesh_.forCorners(vertex, [&](uint32_t c) {
+        const uint32_t n = mesh_.corner[PatchMesh::next(c)], p = mesh_.corner[PatchMesh::previous(c)];
+        shared += n == target || p == target;
+        marks_[n] = marks_[p] = mark_;
+        ++valence;
+    });
+    const uint32_t seen = ++mark_; // marked by the vertex: seen - 1; counted: seen
+    bool closesTetrahedron = false;
+    mesh_.forCorners(target, [&](uint32_t c) {
+        const uint32_t n = mesh_.corner[PatchMesh::next(c)], p = mesh_.corner[PatchMesh::previous(c)];
+        if (n == vertex || p == vertex) return;
+        if (valence == 3 && marks_[n] + 1 >= seen && marks_[p] + 1 >= seen) closesTetrahedron = true;
+        for (const uint32_t x : {n, p}) {
+            if (marks_[x] == seen - 1) {
+                marks_[x] = seen;
+                ++common;
+            }
+        }
+    });
+    return shared == 2 && common == 2 && !closesTetrahedron;
+}
+
+bool InteriorCollapser::hasUniformEdge(uint32_t a, uint32_t b) const {
+    bool found = false;
+    state_.forGroupCorners(a, [&](uint32_t patch, uint32_t c) {
+        if (found) return;
+        const PatchMesh& mesh = state_.patches[patch];
+        const uint32_t n = state_.uniformAt(mesh, PatchMesh::next(c)),
+                       p = state_.uniformAt(mesh, PatchMesh::previous(c));
+        found = (n == b && p != a && p != b) || (p == b && n != a && n != b);
+    });
+    return found;
+}
+
+bool InteriorCollapser::isLinkedInUniform(uint32_t vertex, uint32_t target) {
+    const uint32_t v = mesh_.position[vertex], w = state_.representative[mesh_.position[target]];
+    ring_.clear();
+    uint32_t faces = 0;
+    std::array<uint32_t, 2> opposite = {kNone, kNone};
+    uint32_t shared = 0;
+    bool fits = true;
+    mesh_.forCorners(vertex, [&](uint32_t c) {
+        const uint32_t n = state_.uniformAt(mesh_, PatchMesh::next(c)),
+                       p = state_.uniformAt(mesh_, PatchMesh::previous(c));
+        if (n == p || n == v || p == v) return;
+        ++faces;
+        if (n == w || p == w) {
+            if (shared < 2) opposite[shared] = n == w ? p : n;
+            ++shared;
+        }
+        ring_.push_back(n);
+        ring_.push_back(p);
+    });
+    if (shared != 2 || opposite[0] == opposite[1]) return false;
+    std::sort(ring_.begin(), ring_.end());
+    ring_.erase(std::unique(ring_.begin(), ring_.end()), ring_.end());
+    for (const uint32_t n : ring_) {
+        if (n == w || n == opposite[0] || n == opposite[1]) continue;
+        fits = fits && !(state_.isBoundary[n] && !state_.isBoundary[w] ? hasUniformEdge(w, n) : hasUniformEdge(n, w));
+    }
+    if (!fits || faces != 3) return fits;
+    // The third face becomes (w, opposite): it must not be there already.
+    bool closesTetrahedron = false;
+    state_.forGroupCorners(w, [&](uint32_t patch, uint32_t c) {
+        const PatchMesh& mesh = state_.patches[patch];
+        const uint32_t n = state_.uniformAt(mesh, PatchMesh::next(c)),
+                       p = state_.uniformAt(mesh, PatchMesh::previous(c));
+        closesTetrahedron |= (n == opposite[0] && p == opposite[1]) || (n == opposite[1] && p == opposite[0]);
+    });
+    return !closesTetrahedron;
+}
+
+InteriorCollapser::Outcome InteriorCollapser::checkStates(uint32_t vertex, uint32_t target, uint32_t level) {
+    const StateCheck::Move move = {mesh_.position[vertex], mesh_.position[target], level, 0, false};
+    Outcome outcome = Outcome::done;
+    mesh_.forCorners(vertex, [&](uint32_t c) {
+        if (outcome == Outcome::refused) return;
+        if (mesh_.corner[PatchMesh::next(c)] == target || mesh_.corner[PatchMesh::previous(c)] == target) return;
+        const StateCheck::Verdict verdict = check_.check(patch_, c / 3, move, wedges_);
+        if (verdict == StateCheck::Verdict::badInUniform) outcome = Outcome::refused;
+        if (verdict == StateCheck::Verdict::badInMixed) outcome = Outcome::heldByMixed;
+    });
+    return outcome;
+}
+
+void InteriorCollapser::collapse(uint32_t vertex, uint32_t target, uint32_t level) {
+    const uint32_t v = mesh_.position[vertex], w = mesh_.position[target];
+    state_.collapseLevel[v] = uint8_t(level);
+    state_.parent[v] = w;
+    for (const uint32_t wedge : state_.wedgesOf(v)) {
+        const uint32_t to = wedges_(wedge);
+        state_.wedgeParent[wedge] = to == kNone ? wedges_.any() : to; // no face draws it any more
+    }
+    state_.quadrics[state_.representative[w]].add(state_.quadrics[v]);
+    ring_.clear();
+    mesh_.forCorners(vertex, [&](uint32_t c) { ring_.push_back(mesh_.corner[PatchMesh::next(c)]); });
+    mesh_.collapse(vertex, target, wedges_);
+    ++stamp_[vertex];
+    ++counts_.collapses;
+    for (const uint32_t n : ring_) {
+        if (isBoundary(n)) {
+            touched_.push_back(state_.representative[mesh_.position[n]]);
+        } else if (mesh_.head[n] != kNone) {
+            blocked_[n] = {};
+            evaluate(n);
+        }
+    }
+}
+
+} // namespace xgc::bake

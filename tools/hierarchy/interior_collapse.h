@@ -1,0 +1,85 @@
+#pragma once
+
+#include "hierarchy/collapse_queue.h"
+#include "hierarchy/state_check.h"
+#include "hierarchy/wedge_map.h"
+
+namespace xgc::bake {
+
+/// Collapses of one kind at one level.
+struct CollapseCounts {
+    uint32_t collapses = 0;
+    uint32_t linkRefused = 0;
+    uint32_t flipRefused = 0;
+    uint32_t wedgeRefused = 0;
+
+    void add(const CollapseCounts& c) {
+        collapses += c.collapses;
+        linkRefused += c.linkRefused;
+        flipRefused += c.flipRefused;
+        wedgeRefused += c.wedgeRefused;
+    }
+};
+
+/// Collapses a patch's own vertices, into one another and into the boundary vertices beside them, cheapest
+/// first. Writes to its patch mesh, to the state's entries of its own vertices, and to the quadrics of boundary
+/// vertices; reads the patches around. So patches without a common representative can work at the same time.
+class InteriorCollapser {
+public:
+    InteriorCollapser(SurfaceState& state, uint32_t patch);
+
+    /// A boundary vertex beside this one, or this one itself, has changed.
+    void markDirty(uint32_t vertex) {
+        if (!isDirty_[vertex]) dirty_.push_back(vertex);
+        isDirty_[vertex] = 1;
+    }
+    /// Until nothing is left whose squared error is at most `limit`.
+    void run(uint32_t level, double limit);
+    /// Makes boundary vertices of those that only mixed states kept from collapsing into one: they may then go
+    /// together with the patches that hold them back.
+    void promote(double limit);
+
+    CollapseCounts takeCounts() { return std::exchange(counts_, {}); }
+    /// Boundary vertices whose surroundings changed.
+    std::vector<uint32_t> takeTouched() { return std::exchange(touched_, {}); }
+
+private:
+    enum class Outcome { done, refused, heldByMixed };
+
+    void evaluate(uint32_t vertex);
+    double costOf(uint32_t vertex, uint32_t target) const;
+    Outcome tryCollapse(uint32_t vertex, uint32_t target, uint32_t level);
+    bool mapWedges(uint32_t vertex, uint32_t target);
+    Outcome checkLinks(uint32_t vertex, uint32_t target);
+    bool isLinkedInPatch(uint32_t vertex, uint32_t target);
+    bool isLinkedInUniform(uint32_t vertex, uint32_t target);
+    bool hasUniformEdge(uint32_t a, uint32_t b) const;
+    Outcome checkStates(uint32_t vertex, uint32_t target, uint32_t level);
+    void collapse(uint32_t vertex, uint32_t target, uint32_t level);
+    void block(uint32_t vertex, uint32_t target, double cost);
+
+    bool isBoundary(uint32_t vertex) const { return state_.isBoundary[mesh_.position[vertex]]; }
+
+    SurfaceState& state_;
+    PatchMesh& mesh_;
+    const uint32_t patch_;
+    CollapseQueue queue_;
+    std::vector<uint32_t> stamp_, target_;
+    struct Blocked {
+        double cost = -1; ///< targets up to here, and at equal cost up to that position, were refused
+        uint32_t target = 0;
+    };
+    std::vector<Blocked> blocked_;
+    std::vector<uint8_t> isDirty_;
+    std::vector<uint32_t> dirty_;
+    std::vector<std::pair<uint32_t, double>> held_; ///< vertices that only mixed states refused, and the cost
+    std::vector<uint32_t> touched_;
+    CollapseCounts counts_;
+
+    StateCheck check_;
+    WedgeMap wedges_;
+    std::vector<uint32_t> ring_, marks_;
+    uint32_t mark_ = 0;
+};
+
+} // namespace xgc::bake

@@ -1,0 +1,100 @@
+#pragma once
+
+#include "hierarchy/domain_sets.h"
+#include "hierarchy/patch_mesh.h"
+#include "hierarchy/quadric.h"
+
+#include <xgc/bake/patches.h>
+
+namespace xgc::bake {
+
+/// A surface half-way through a build.
+///
+/// Two triangulations matter. In the *patch meshes* vertices that several patches see (boundary vertices) stand where
+/// the input has them, and a patch's own are collapsed: from them any state of levels can be drawn. In the *uniform
+/// state* the boundary vertices are collapsed too. It is not stored: it is the patch meshes seen through
+/// `representative`.
+///
+///   boundary vertices     a   b   c   d   e        chain of b:  b -(level 2, {s,q})-> c -(level 5, {s,q,r})-> e
+///   representatives       a   e   e   d   e        group of e:  e, b, c
+struct SurfaceState {
+    /// Where a position lies in a patch mesh.
+    struct Occurrence {
+        uint32_t patch, vertex;
+    };
+
+    SurfaceState(const Mesh& mesh, const Topology& topology, const PatchAssignment& assignment);
+
+    const Mesh& mesh;
+    std::vector<PatchMesh> patches;
+
+    // A position each.
+    std::vector<uint8_t> isBoundary;
+    std::vector<uint8_t> collapseLevel;   ///< kNeverCollapses while it stands
+    std::vector<uint32_t> parent;         ///< kNone while it stands
+    std::vector<uint32_t> domain;         ///< in domains; frozen when it collapses
+    std::vector<uint32_t> representative; ///< of boundary vertices, in the uniform state; others: themselves
+    std::vector<uint32_t> groupNext;      ///< ring of the boundary vertices with the same representative
+    std::vector<Quadric> quadrics;        ///< about `origin`
+    std::vector<double> costScale;        ///< importance squared; infinite: locked
+
+    DomainSets domains;
+
+    // A wedge each.
+    std::vector<uint32_t> wedgeParent;
+    std::vector<uint32_t> wedgeRepresentative;
+
+    glm::dvec3 origin{0};
+    double diagonal = 1;
+
+    glm::dvec3 point(uint32_t position) const { return glm::dvec3(mesh.positions[position]) - origin; }
+    std::span<const Occurrence> occurrencesOf(uint32_t position) const {
+        return std::span(occurrences)
+            .subspan(firstOccurrence[position], firstOccurrence[position + 1] - firstOccurrence[position]);
+    }
+    std::span<const uint32_t> wedgesOf(uint32_t position) const {
+        return std::span(positionWedges).subspan(firstWedge[position], firstWedge[position + 1] - firstWedge[position]);
+    }
+
+    /// Visits the positions whose representative is `r`.
+    template <typename Visit>
+    void forGroup(uint32_t r, const Visit& visit) const {
+        uint32_t m = r;
+        do {
+            visit(m);
+            m = groupNext[m];
+        } while (m != r);
+    }
+
+    /// Visits (patch, corner) of all live corners at positions whose representative is `r`.
+    template <typename Visit>
+    void forGroupCorners(uint32_t r, const Visit& visit) const {
+        forGroup(r, [&](uint32_t m) {
+            for (const Occurrence& o : occurrencesOf(m)) {
+                patches[o.patch].forCorners(o.vertex, [&](uint32_t c) { visit(o.patch, c); });
+            }
+        });
+    }
+
+    uint32_t positionAt(const PatchMesh& patch, uint32_t corner) const { return patch.position[patch.corner[corner]]; }
+    uint32_t uniformAt(const PatchMesh& patch, uint32_t corner) const {
+        return representative[positionAt(patch, corner)];
+    }
+    uint32_t uniformWedgeAt(const PatchMesh& patch, uint32_t corner) const {
+        return wedgeRepresentative[patch.wedge[corner]];
+    }
+
+private:
+    void buildPatches(const PatchAssignment& assignment);
+    void classify(const Topology& topology);
+    void listWedges();
+
+    std::vector<uint32_t> firstOccurrence;
+    std::vector<Occurrence> occurrences;
+    std::vector<uint32_t> firstWedge, positionWedges;
+};
+
+/// Sets the quadrics from faces, and from perpendicular planes at borders, seams, cuts and sharp folds.
+void initQuadrics(const Topology& topology, const PatchAssignment& assignment, SurfaceState& state);
+
+} // namespace xgc::bake
