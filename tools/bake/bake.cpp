@@ -1,3 +1,4 @@
+#include "importance.h"
 #include "stage_clock.h"
 #include "verdicts.h"
 
@@ -72,7 +73,14 @@ Status segment(const BakeOptions& options, Work& work, BakeReport& report) {
 }
 
 Status buildHierarchy(const BakeOptions& options, Work& work, BakeReport& report) {
-    work.hierarchy = buildThesisHierarchy(work.mesh, work.topology, work.parts, options.hierarchy, &report.levels);
+    if (options.preset == Preset::thesis) {
+        work.hierarchy = buildThesisHierarchy(work.mesh, work.topology, work.parts, options.thesis, &report.levels);
+    } else {
+        HierarchyOptions hierarchy = options.hierarchy;
+        if (Status s = findImportances(options, work.mesh, work.parts, hierarchy); !s.ok()) return s;
+        const PatchAssignment patches = splitPatches(work.mesh, work.topology, work.parts, options.patchFaces);
+        work.hierarchy = buildDefaultHierarchy(work.mesh, work.topology, patches, hierarchy, &report.levels);
+    }
     report.patches = work.hierarchy.patchCount();
     return checkHierarchy(work.mesh, work.hierarchy);
 }
@@ -104,7 +112,7 @@ std::string hashOf(const std::filesystem::path& file) {
 std::string provenance(const BakeOptions& options) {
     nlohmann::ordered_json json;
     json["tool"] = "xgc " XGC_VERSION;
-    json["preset"] = "thesis";
+    json["preset"] = options.preset == Preset::thesis ? "thesis" : "default";
     constexpr const char* kSources[] = {"thesis", "none", "material", "component", "file"};
     json["parts"] = kSources[int(options.parts)];
     if (options.parts == PartSource::thesis) {
@@ -115,9 +123,17 @@ std::string provenance(const BakeOptions& options) {
     json["inputHash"] = hashOf(options.input);
     json["weldTolerance"] = options.weld.tolerance;
     json["normals"] = options.normals == NormalSource::smooth ? "smooth" : "keep";
-    json["lockCurvature"] = options.hierarchy.lockCurvature;
-    constexpr const char* kNorms[] = {"trace", "sum", "frobenius"};
-    json["curvature"] = kNorms[int(options.hierarchy.curvature)];
+    if (options.preset == Preset::thesis) {
+        json["lockCurvature"] = options.thesis.lockCurvature;
+        constexpr const char* kNorms[] = {"trace", "sum", "frobenius"};
+        json["curvature"] = kNorms[int(options.thesis.curvature)];
+    } else {
+        json["patchFaces"] = options.patchFaces;
+        json["maxLevels"] = options.hierarchy.maxLevels;
+        json["firstError"] = options.hierarchy.firstError;
+        for (const PartImportance& i : options.importance) json["importance"][i.part] = fmt::format("{}", i.factor);
+        if (options.importanceChannel >= 0) json["importanceChannel"] = options.importanceChannel;
+    }
     return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
@@ -148,7 +164,7 @@ Status bake(const BakeOptions& options, BakeReport& report) {
     if (s.ok()) s = stage("build", [&] { return buildHierarchy(options, work, report); });
     if (s.ok()) s = stage("measure", [&] { return measure(options, work, report); });
     if (s.ok()) s = stage("lay out", [&] { return layOut(options, work, report); });
-    if (s.ok()) judge(report);
+    if (s.ok()) judge(options, report);
     if (s.ok()) s = stage("write", [&] { return writeFileAtomically(options.output, work.bytes); });
     return s;
 }

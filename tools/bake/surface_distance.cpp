@@ -1,6 +1,7 @@
 #include "surface_distance.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -8,6 +9,7 @@ namespace xgc::bake {
 namespace {
 
 constexpr uint32_t kLeafTriangles = 4;
+constexpr uint32_t kNowhere = 0xffffffffu;
 
 double squaredBoxDistance(const glm::dvec3& p, const glm::vec3& low, const glm::vec3& high) {
     const glm::dvec3 d = glm::max(glm::max(glm::dvec3(low) - p, p - glm::dvec3(high)), glm::dvec3(0));
@@ -86,9 +88,12 @@ void SurfaceDistance::build(uint32_t first, uint32_t last, const std::vector<glm
     build(middle, last, centroids, order);
 }
 
-SurfaceDistance::Hit SurfaceDistance::nearest(const glm::dvec3& p, double enough) const {
-    Hit best{std::numeric_limits<double>::infinity(), 0};
-    if (nodes_.empty()) return best;
+template <typename Counts>
+SurfaceDistance::Hit SurfaceDistance::search(const glm::dvec3& p, double enough, double most,
+                                             const Counts& counts) const {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    Hit best{most < kInfinity ? std::nextafter(most, kInfinity) : kInfinity, kNowhere};
+    if (nodes_.empty()) return {kInfinity, 0};
     struct Entry {
         uint32_t node;
         double distance;
@@ -102,6 +107,7 @@ SurfaceDistance::Hit SurfaceDistance::nearest(const glm::dvec3& p, double enough
         const Node& node = nodes_[entry.node];
         if (node.count > 0) {
             for (uint32_t i = node.first; i < node.first + node.count; ++i) {
+                if (!counts(given_[i])) continue;
                 const Triangle& t = triangles_[i];
                 const double squared = squaredDistance(p, t.a, t.b, t.c);
                 if (squared < best.squared) best = {squared, i};
@@ -115,8 +121,18 @@ SurfaceDistance::Hit SurfaceDistance::nearest(const glm::dvec3& p, double enough
         stack[depth++] = far;
         stack[depth++] = near;
     }
+    if (best.triangle == kNowhere) return {kInfinity, 0};
     best.triangle = given_[best.triangle];
     return best;
+}
+
+SurfaceDistance::Hit SurfaceDistance::nearest(const glm::dvec3& p, double enough) const {
+    return search(p, enough, std::numeric_limits<double>::infinity(), [](uint32_t) { return true; });
+}
+
+SurfaceDistance::Hit SurfaceDistance::nearest(const glm::dvec3& p, double enough, double most,
+                                              const std::function<bool(uint32_t)>& counts) const {
+    return search(p, enough, most, counts);
 }
 
 } // namespace xgc::bake

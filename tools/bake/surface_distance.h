@@ -3,6 +3,7 @@
 #include <glm/glm.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace xgc::bake {
@@ -25,8 +26,13 @@ public:
     };
     /// The nearest triangle to `p`, or any at or below the squared distance `enough`.
     Hit nearest(const glm::dvec3& p, double enough = 0) const;
+    /// Among the triangles, as given, that `counts` takes; infinite beyond the squared distance `most`.
+    Hit nearest(const glm::dvec3& p, double enough, double most, const std::function<bool(uint32_t)>& counts) const;
 
 private:
+    template <typename Counts>
+    Hit search(const glm::dvec3& p, double enough, double most, const Counts& counts) const;
+
     struct Node {
         glm::vec3 low, high;
         uint32_t first; ///< leaf: first triangle; inner: right child (the left one follows)

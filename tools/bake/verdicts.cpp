@@ -7,7 +7,7 @@
 namespace xgc::bake {
 namespace {
 
-void judgeInput(BakeReport& report) {
+void judgeInput(const BakeOptions& options, BakeReport& report) {
     const WeldReport& weld = report.weld;
     const auto warn = [&](uint32_t count, const char* what, const char* remedy) {
         if (count > 0) {
@@ -21,11 +21,16 @@ void judgeInput(BakeReport& report) {
     note(weld.duplicateFaces, "duplicate faces dropped", "none needed");
     note(weld.backToBackPairs, "back-to-back face pairs kept", "use a double-sided material instead");
     note(weld.zeroAreaFaces, "faces without area kept", "remove them in the modelling tool");
-    warn(weld.nonManifoldEdges, "edges with more than two faces: locked, they hold detail up",
+    const bool locks = options.preset == Preset::thesis;
+    warn(weld.nonManifoldEdges,
+         locks ? "edges with more than two faces: locked, they hold detail up"
+               : "edges with more than two faces: they coarsen along themselves only",
          "separate the sheets that meet there");
-    warn(weld.inconsistentEdges, "edges whose faces wind differently: locked, they hold detail up",
+    warn(weld.inconsistentEdges,
+         locks ? "edges whose faces wind differently: locked, they hold detail up"
+               : "edges whose faces wind differently: they hold detail up",
          "make the winding consistent");
-    note(weld.borderEdges, "border edges: locked by the thesis preset", "close holes that nobody sees into");
+    if (locks) note(weld.borderEdges, "border edges: locked by the thesis preset", "close holes that nobody sees into");
 }
 
 void judgeSegmentation(BakeReport& report) {
@@ -41,27 +46,27 @@ void judgeSegmentation(BakeReport& report) {
     }
 }
 
-/// Positions with several wedges are seams, which the preset locks.
-void judgeSeams(BakeReport& report) {
+/// Positions with several wedges are seams, which coarsen along themselves only, or not at all (thesis).
+void judgeSeams(const BakeOptions& options, BakeReport& report) {
     const double split = double(report.vertices) / std::max(1u, report.positions) - 1;
     if (split < 0.5) return;
     report.verdicts.push_back(
         {Severity::warning,
-         fmt::format("{:.1f} vertices a position: normals or UVs are split nearly everywhere, and "
-                     "seams are locked",
-                     1 + split),
+         fmt::format("{:.1f} vertices a position: normals or UVs are split nearly everywhere, and seams {}", 1 + split,
+                     options.preset == Preset::thesis ? "are locked" : "coarsen along themselves only"),
          "weld", "bake with --normals smooth if the normals are flat by accident"});
 }
 
-/// The thesis's hierarchy keeps boundaries, creases and apices: say so where they hold up much of the mesh.
-void judgeFloor(BakeReport& report) {
+/// Says what holds an asset up that does not become small.
+void judgeFloor(const BakeOptions& options, BakeReport& report) {
     if (report.levels.size() < 2 || report.faces == 0) {
         report.verdicts.push_back({Severity::warning, "no vertex may collapse: the asset has one level", "build",
                                    "every vertex lies on a boundary, seam or crease; use fewer parts"});
         return;
     }
     const double left = 100.0 * report.levels.back().faces / report.faces;
-    if (left > 50) {
+    if (options.preset == Preset::thesis) {
+        if (left <= 50) return;
         report.verdicts.push_back({Severity::warning,
                                    fmt::format("{:.1f} % of the faces stay at the coarsest level", left), "build",
                                    "boundaries of parts, seams and sharp features are locked; use fewer parts"});
@@ -70,11 +75,11 @@ void judgeFloor(BakeReport& report) {
 
 } // namespace
 
-void judge(BakeReport& report) {
-    judgeInput(report);
-    judgeSeams(report);
+void judge(const BakeOptions& options, BakeReport& report) {
+    judgeInput(options, report);
+    judgeSeams(options, report);
     judgeSegmentation(report);
-    judgeFloor(report);
+    judgeFloor(options, report);
 }
 
 } // namespace xgc::bake

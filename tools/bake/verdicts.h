@@ -5,6 +5,6 @@
 namespace xgc::bake {
 
 /// Writes the verdicts of a finished bake from what its stages reported.
-void judge(BakeReport& report);
+void judge(const BakeOptions& options, BakeReport& report);
 
 } // namespace xgc::bake

@@ -1,5 +1,6 @@
 #include "hierarchy/boundary_collapse.h"
 
+#include <cmath>
 #include <limits>
 
 namespace xgc::bake {
@@ -30,7 +31,7 @@ void BoundaryCollapser::run(uint32_t level, double limit) {
     while (queue_.hasBelow(limit)) {
         const CollapseQueue::Entry entry = queue_.pop();
         const uint32_t v = entry.vertex;
-        if (entry.stamp != stamp_[v]) continue;
+        if (entry.stamp != stamp_[v] || state_.parent[v] != kNone) continue;
         const Outcome outcome = tryCollapse(v, target_[v], level);
         if (outcome == Outcome::done) continue;
         if (outcome == Outcome::heldByMixed) held_.push_back(v);
@@ -82,6 +83,7 @@ void BoundaryCollapser::gatherEdges(const std::vector<StarFace>& star, std::vect
 /// Along borders (and where sheets meet) if it has any; else along boundaries of patches; else, once the patches beside
 /// it have died, or where it is of one patch, to any boundary vertex.
 void BoundaryCollapser::evaluate(uint32_t vertex) {
+    if (std::isinf(state_.costScale[vertex])) return; // locked
     gatherStar(vertex, star_);
     gatherEdges(star_, edges_);
     int strongest = 0;
@@ -152,6 +154,8 @@ bool BoundaryCollapser::isLinked(uint32_t target) {
 
     gatherEdges(star_, edges_);
     gatherStar(target, otherStar_);
+    // The last triangles of a component do not go one by one.
+    if (opposite.size() == star_.size() && opposite.size() == otherStar_.size()) return false;
     thread_local std::vector<StarEdge> others;
     gatherEdges(otherStar_, others);
     uint32_t holes = 0;

@@ -3,6 +3,7 @@
 #include "hierarchy/boundary_collapse.h"
 #include "hierarchy/interior_collapse.h"
 #include "hierarchy/surface_state.h"
+#include "hierarchy/vanish_components.h"
 
 #include <cassert>
 #include <chrono>
@@ -26,6 +27,10 @@ double levelError(double firstError, uint32_t level) {
     return std::ldexp(firstError * odd, int((level - 1) / 2));
 }
 
+double square(double x) {
+    return x * x;
+}
+
 class Builder {
 public:
     Builder(const Mesh& mesh, const Topology& topology, const PatchAssignment& assignment,
@@ -36,10 +41,13 @@ public:
         interiors_.reserve(state_.patches.size());
         for (uint32_t p = 0; p < state_.patches.size(); ++p) interiors_.emplace_back(state_, p);
         boundary_ = std::make_unique<BoundaryCollapser>(state_, interiors_);
+        vanisher_ = std::make_unique<ComponentVanisher>(
+            topology, state_, square(levelError(options.firstError * state_.diagonal, options.maxLevels)));
     }
 
     CollapseCounts buildLevel(uint32_t level, double limit) {
         CollapseCounts counts;
+        counts.collapses = vanisher_->run(level, limit);
         for (int round = 0; round < kMostRounds; ++round) {
             boundary_->run(level, limit);
             const CollapseCounts boundary = boundary_->takeCounts();
@@ -96,6 +104,7 @@ private:
     SurfaceState state_;
     std::vector<InteriorCollapser> interiors_;
     std::unique_ptr<BoundaryCollapser> boundary_;
+    std::unique_ptr<ComponentVanisher> vanisher_;
 };
 
 /// An interior vertex may have collapsed into a vertex that had collapsed before it, which matters where other patches
@@ -170,8 +179,7 @@ Hierarchy buildDefaultHierarchy(const Mesh& mesh, const Topology& topology, cons
     uint32_t levelCount = 1;
     for (uint32_t level = 1; level <= options.maxLevels; ++level) {
         start = std::chrono::steady_clock::now();
-        const double error = levelError(first, level);
-        const CollapseCounts c = builder.buildLevel(level, error * error);
+        const CollapseCounts c = builder.buildLevel(level, square(levelError(first, level)));
         if (c.collapses > 0) levelCount = level + 1;
         levels.push_back({0, c.collapses, c.linkRefused, c.flipRefused, c.wedgeRefused, secondsSince(start)});
     }

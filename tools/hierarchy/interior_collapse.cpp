@@ -1,5 +1,6 @@
 #include "hierarchy/interior_collapse.h"
 
+#include <cmath>
 #include <limits>
 
 namespace xgc::bake {
@@ -24,7 +25,7 @@ void InteriorCollapser::run(uint32_t level, double limit) {
     while (queue_.hasBelow(limit)) {
         const CollapseQueue::Entry entry = queue_.pop();
         const uint32_t v = entry.vertex;
-        if (entry.stamp != stamp_[v]) continue;
+        if (entry.stamp != stamp_[v] || isBoundary(v)) continue;
         const uint32_t target = target_[v];
         const Outcome outcome = tryCollapse(v, target, level);
         if (outcome == Outcome::done) continue;
@@ -58,6 +59,7 @@ double InteriorCollapser::costOf(uint32_t vertex, uint32_t target) const {
 
 /// Finds the cheapest target that was not refused, and queues the vertex.
 void InteriorCollapser::evaluate(uint32_t vertex) {
+    if (std::isinf(state_.costScale[mesh_.position[vertex]])) return; // locked
     const Blocked blocked = blocked_[vertex];
     double best = std::numeric_limits<double>::infinity();
     uint32_t bestTarget = kNone;

@@ -7,6 +7,8 @@
 #include <tbb/global_control.h>
 
 #include <csignal>
+#include <cstdlib>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -17,7 +19,8 @@ std::atomic<bool> interrupted{false};
 
 struct BakeArguments {
     std::string input, output, report;
-    std::string preset = "thesis", parts = "thesis", curvature = "trace", normals = "keep";
+    std::string preset = "default", parts = "thesis", curvature = "trace", normals = "keep", importanceColor;
+    std::vector<std::string> lockedParts, importances;
     uint32_t jobs = 0;
     bool quiet = false;
     bake::BakeOptions options;
@@ -47,14 +50,33 @@ bake::Status parseParts(const BakeArguments& arguments, bake::BakeOptions& optio
     return {};
 }
 
-bake::Status parse(const BakeArguments& arguments, bake::BakeOptions& options) {
-    if (arguments.preset != "thesis") {
-        return bake::usageError(fmt::format("--preset {}: this version has the preset thesis only", arguments.preset));
+/// PART=FACTOR, and parts to lock.
+bake::Status parseImportance(const BakeArguments& arguments, bake::BakeOptions& options) {
+    for (const std::string& text : arguments.importances) {
+        const size_t equals = text.rfind('=');
+        char* end = nullptr;
+        const float factor = equals == std::string::npos ? 0 : std::strtof(text.c_str() + equals + 1, &end);
+        if (!(factor > 0) || *end != 0 || equals == 0) {
+            return bake::usageError(fmt::format("--importance {}: expected PART=FACTOR with a factor above 0", text));
+        }
+        options.importance.push_back({text.substr(0, equals), factor});
     }
+    for (const std::string& part : arguments.lockedParts) {
+        options.importance.push_back({part, std::numeric_limits<float>::infinity()});
+    }
+    if (!arguments.importanceColor.empty()) {
+        options.importanceChannel = int(std::string_view("rgba").find(arguments.importanceColor));
+    }
+    return {};
+}
+
+bake::Status parse(const BakeArguments& arguments, bake::BakeOptions& options) {
     if (bake::Status s = parseParts(arguments, options); !s.ok()) return s;
-    options.hierarchy.curvature = arguments.curvature == "sum"         ? bake::CurvatureNorm::sum
-                                  : arguments.curvature == "frobenius" ? bake::CurvatureNorm::frobenius
-                                                                       : bake::CurvatureNorm::trace;
+    if (bake::Status s = parseImportance(arguments, options); !s.ok()) return s;
+    options.preset = arguments.preset == "thesis" ? bake::Preset::thesis : bake::Preset::standard;
+    options.thesis.curvature = arguments.curvature == "sum"         ? bake::CurvatureNorm::sum
+                               : arguments.curvature == "frobenius" ? bake::CurvatureNorm::frobenius
+                                                                    : bake::CurvatureNorm::trace;
     options.normals = arguments.normals == "smooth" ? bake::NormalSource::smooth : bake::NormalSource::keep;
     options.input = arguments.input;
     options.output = arguments.output;
@@ -113,15 +135,27 @@ void addBake(CLI::App& app, Run& run) {
     CLI::App* bake = app.add_subcommand("bake", "Bake a model file into one .xgc asset");
     bake->add_option("IN", arguments->input, "Model: glTF, GLB, OBJ, PLY, OFF, STL, ...")->required();
     bake->add_option("-o,--output", arguments->output, "The asset to write, ending in .xgc")->required();
-    bake->add_option("--preset", arguments->preset, "Hierarchy: thesis")->capture_default_str();
+    bake->add_option("--preset", arguments->preset, "Hierarchy: default, or thesis (boundaries and creases locked)")
+        ->check(CLI::IsMember({"default", "thesis"}))
+        ->capture_default_str();
     bake->add_option("--parts", arguments->parts, "Parts: thesis, none, material, component or a FILE.seg")
         ->capture_default_str();
     bake->add_option("--parts-count", arguments->options.segment.partsCount,
                      "Parts wanted of --parts thesis; 0: automatic")
         ->capture_default_str();
-    bake->add_option("--curvature", arguments->curvature, "Norm that locks creases and apices")
+    bake->add_option("--curvature", arguments->curvature, "Of --preset thesis: norm that locks creases and apices")
         ->check(CLI::IsMember({"trace", "sum", "frobenius"}))
         ->capture_default_str();
+    bake->add_option("--patch-faces", arguments->options.patchFaces, "Faces a patch, about; 0: a patch a part")
+        ->capture_default_str();
+    bake->add_option("--levels", arguments->options.hierarchy.maxLevels, "Levels above the input's, at most")
+        ->check(CLI::Range(1, 200))
+        ->capture_default_str();
+    bake->add_option("--lock-part", arguments->lockedParts, "Part (name or number) whose vertices stay at all levels");
+    bake->add_option("--importance", arguments->importances, "PART=FACTOR: errors of the part count FACTOR times");
+    bake->add_option("--importance-color", arguments->importanceColor,
+                     "Channel of the vertex colours with painted importance: 0 none, 1 locks")
+        ->check(CLI::IsMember({"r", "g", "b", "a"}));
     bake->add_option("--normals", arguments->normals,
                      "keep the input's, or make smooth ones with creases at 60 degrees")
         ->check(CLI::IsMember({"keep", "smooth"}))

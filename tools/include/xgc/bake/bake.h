@@ -1,6 +1,7 @@
 #pragma once
 
 #include <xgc/bake/asset_writer.h>
+#include <xgc/bake/default_hierarchy.h>
 #include <xgc/bake/mesh.h>
 #include <xgc/bake/segment.h>
 #include <xgc/bake/thesis_hierarchy.h>
@@ -13,9 +14,21 @@ namespace xgc::bake {
 /// Where parts come from.
 enum class PartSource { thesis, none, material, component, labels };
 
+/// How the hierarchy is built.
+enum class Preset {
+    standard, ///< `default` on the command line: quadrics, error levels, boundaries that coarsen (default_hierarchy.h)
+    thesis    ///< as the thesis's chapter 4 (thesis_hierarchy.h)
+};
+
+/// An artist's word on a part; the name is one of the segmentation's, or a part's number.
+struct PartImportance {
+    std::string part;
+    float factor = 1; ///< its error counts that many times; infinity: locked
+};
+
 /// What becomes of the input's normals. Missing ones are made in any case.
 enum class NormalSource {
-    keep,  ///< as they are: normals that differ at a position split it into wedges, which the preset locks
+    keep,  ///< as they are: normals that differ at a position split it into wedges, which the preset thesis locks
     smooth ///< made anew, with creases at 60 degrees
 };
 
@@ -27,7 +40,14 @@ struct BakeOptions {
     WeldOptions weld;
     NormalSource normals = NormalSource::keep;
     ThesisSegmentOptions segment;
-    ThesisHierarchyOptions hierarchy;
+    Preset preset = Preset::standard;
+    ThesisHierarchyOptions thesis; ///< of Preset::thesis
+    HierarchyOptions hierarchy;    ///< of Preset::standard; the importances come from the next three
+    uint32_t patchFaces = kDefaultPatchFaces;
+    std::vector<PartImportance> importance;
+    /// Channel 0..3 of the first vertex colours in which artists paint importance: c counts 1 / (1 - c) times, 1 locks.
+    /// -1: none.
+    int importanceChannel = -1;
     /// Told a stage's name and finished fraction, on the calling thread.
     std::function<void(const char* stage, double fraction)> progress;
     /// Set from anywhere (a signal handler) to stop at the next step; the target is then untouched.
