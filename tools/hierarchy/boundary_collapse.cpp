@@ -48,16 +48,15 @@ void BoundaryCollapser::runWidening(uint32_t level, double limit) {
     widening_ = false;
 }
 
-void BoundaryCollapser::gatherStar(uint32_t vertex, std::vector<StarFace>& star) const {
+void BoundaryCollapser::gatherStar(uint32_t vertex, std::vector<StarFace>& star) {
     star.clear();
-    state_.forGroupCorners(vertex, [&](uint32_t patch, uint32_t c) {
+    state_.pruneStar(vertex);
+    for (const auto [patch, c] : state_.starOf(vertex)) {
         const PatchMesh& mesh = state_.patches[patch];
         const uint32_t cn = PatchMesh::next(c), cp = PatchMesh::previous(c);
-        const uint32_t n = state_.uniformAt(mesh, cn), p = state_.uniformAt(mesh, cp);
-        if (n == vertex || p == vertex || n == p) return;
-        star.push_back({patch, n, p, state_.uniformWedgeAt(mesh, c), state_.uniformWedgeAt(mesh, cn),
-                        state_.uniformWedgeAt(mesh, cp)});
-    });
+        star.push_back({patch, state_.uniformAt(mesh, cn), state_.uniformAt(mesh, cp), state_.uniformWedgeAt(mesh, c),
+                        state_.uniformWedgeAt(mesh, cn), state_.uniformWedgeAt(mesh, cp)});
+    }
 }
 
 void BoundaryCollapser::gatherEdges(const std::vector<StarFace>& star, std::vector<StarEdge>& edges) const {
@@ -133,7 +132,7 @@ bool BoundaryCollapser::mapWedges(uint32_t vertex, uint32_t target) {
         if (f.next == target) fits &= wedges_.add(f.wedge, f.nextWedge);
         if (f.previous == target) fits &= wedges_.add(f.wedge, f.previousWedge);
     }
-    if (!fits) return false;
+    if (!fits || state_.wedgesOf(vertex).size() == 1) return fits;
     state_.forGroupCorners(vertex, [&](uint32_t patch, uint32_t c) {
         fits = fits && wedges_(state_.uniformWedgeAt(state_.patches[patch], c)) != kNone;
     });
@@ -249,6 +248,9 @@ void BoundaryCollapser::collapse(uint32_t vertex, uint32_t target, uint32_t leve
         }
     }
     std::swap(state_.groupNext[vertex], state_.groupNext[target]);
+    auto &from = state_.starOf(vertex), &to = state_.starOf(target);
+    to.insert(to.end(), from.begin(), from.end());
+    from = {};
     ++stamp_[vertex];
     ++counts_.collapses;
     std::sort(around_.begin(), around_.end());

@@ -33,7 +33,7 @@ private:
         bool severalPatches;
     };
 
-    void gatherStar(uint32_t vertex, std::vector<StarFace>& star) const;
+    void gatherStar(uint32_t vertex, std::vector<StarFace>& star);
     void gatherEdges(const std::vector<StarFace>& star, std::vector<StarEdge>& edges) const;
     void evaluate(uint32_t vertex);
     Outcome tryCollapse(uint32_t vertex, uint32_t target, uint32_t level);

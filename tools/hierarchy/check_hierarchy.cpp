@@ -124,10 +124,11 @@ Status checkChainsEnd(std::span<const uint32_t> parentPosition) {
 /// One face in states where all that its own patch alone decides is at one level, and all that is shared at another.
 class FaceStates {
 public:
-    FaceStates(const Hierarchy& hierarchy, glm::uvec3 corners)
-        : h_(hierarchy), corners_{corners.x, corners.y, corners.z} {}
+    FaceStates(const Hierarchy& hierarchy, std::span<const uint8_t> isSeam, glm::uvec3 corners)
+        : h_(hierarchy), isSeam_(isSeam), corners_{corners.x, corners.y, corners.z} {}
 
     bool consistent() const {
+        if (!meetsSeam()) return true;
         if (!sharedCollapse()) return consistentAt(0);
         for (uint32_t shared = 0; shared < h_.levelCount; ++shared) {
             if (!consistentAt(shared)) return false;
@@ -136,6 +137,16 @@ public:
     }
 
 private:
+    /// Only a position with several wedges can be met with two of them.
+    bool meetsSeam() const {
+        for (uint32_t w : corners_) {
+            for (; w != kNone; w = h_.wedgeParent[w]) {
+                if (isSeam_[h_.wedgePosition[w]]) return true;
+            }
+        }
+        return false;
+    }
+
     bool isShared(uint32_t position) const { return h_.domainPatches[h_.domain[position]].size() > 1; }
 
     bool sharedCollapse() const {
@@ -167,6 +178,7 @@ private:
     static bool isDegenerate(const std::array<uint32_t, 3>& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
     const Hierarchy& h_;
+    const std::span<const uint8_t> isSeam_;
     std::array<uint32_t, 3> corners_;
 };
 
@@ -183,8 +195,14 @@ Status checkHierarchy(const Mesh& mesh, const Hierarchy& h) {
         if (Status s = checkParent(h, w, parentPosition); !s.ok()) return s;
     }
     if (Status s = checkChainsEnd(parentPosition); !s.ok()) return s;
+    std::vector<uint8_t> isMet(h.positions.size(), 0), isSeam(h.positions.size(), 0);
+    for (const uint32_t p : h.wedgePosition) {
+        isSeam[p] |= isMet[p];
+        isMet[p] = 1;
+    }
     for (uint32_t f = 0; f < mesh.faceCount(); ++f) {
-        if (!FaceStates(h, mesh.faces[f]).consistent()) return broken("two wedges of one position meet in face", f);
+        if (!FaceStates(h, isSeam, mesh.faces[f]).consistent())
+            return broken("two wedges of one position meet in face", f);
     }
     return {};
 }

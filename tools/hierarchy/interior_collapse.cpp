@@ -7,11 +7,25 @@ namespace xgc::bake {
 
 InteriorCollapser::InteriorCollapser(SurfaceState& state, uint32_t patch)
     : state_(state), mesh_(state.patches[patch]), patch_(patch), stamp_(mesh_.vertexCount(), 0),
-      target_(mesh_.vertexCount(), kNone), blocked_(mesh_.vertexCount()), isDirty_(mesh_.vertexCount(), 0),
-      check_(state), marks_(mesh_.vertexCount(), 0) {
+      target_(mesh_.vertexCount(), kNone), cost_(mesh_.vertexCount()), blocked_(mesh_.vertexCount()),
+      isDirty_(mesh_.vertexCount(), 0), meetsBoundary_(mesh_.vertexCount(), 0), check_(state),
+      marks_(mesh_.vertexCount(), 0) {
+    points_.reserve(mesh_.vertexCount());
     for (uint32_t v = 0; v < mesh_.vertexCount(); ++v) {
-        if (!isBoundary(v)) markDirty(v);
+        points_.push_back(state.point(mesh_.position[v]));
+        if (isBoundary(v)) {
+            markBesideBoundary(v);
+        } else {
+            markDirty(v);
+        }
     }
+}
+
+void InteriorCollapser::markBesideBoundary(uint32_t boundaryVertex) {
+    mesh_.forCorners(boundaryVertex, [&](uint32_t c) {
+        meetsBoundary_[mesh_.corner[PatchMesh::next(c)]] = 1;
+        meetsBoundary_[mesh_.corner[PatchMesh::previous(c)]] = 1;
+    });
 }
 
 void InteriorCollapser::run(uint32_t level, double limit) {
@@ -37,9 +51,10 @@ void InteriorCollapser::run(uint32_t level, double limit) {
 void InteriorCollapser::promote(double limit) {
     for (const auto& [v, cost] : held_) {
         if (mesh_.head[v] == kNone || isBoundary(v) || cost > limit) continue;
-        state_.isBoundary[mesh_.position[v]] = 1;
+        state_.makeBoundary(mesh_.position[v]);
         ++stamp_[v];
         touched_.push_back(mesh_.position[v]);
+        markBesideBoundary(v);
         mesh_.forCorners(v, [&](uint32_t c) {
             const uint32_t n = mesh_.corner[PatchMesh::next(c)];
             if (!isBoundary(n)) markDirty(n);
@@ -52,7 +67,7 @@ void InteriorCollapser::promote(double limit) {
 double InteriorCollapser::costOf(uint32_t vertex, uint32_t target) const {
     const uint32_t v = mesh_.position[vertex], w = mesh_.position[target];
     const uint32_t r = state_.representative[w];
-    double cost = state_.quadrics[v].mean(state_.point(w));
+    double cost = state_.quadrics[v].mean(points_[target]);
     if (r != w) cost = std::max(cost, state_.quadrics[v].mean(state_.point(r)));
     return cost * state_.costScale[v];
 }
@@ -73,7 +88,22 @@ void InteriorCollapser::evaluate(uint32_t vertex) {
     });
     ++stamp_[vertex];
     target_[vertex] = bestTarget;
-    if (best < std::numeric_limits<double>::infinity()) queue_.push({best, vertex, stamp_[vertex]});
+    cost_[vertex] = best;
+    if (bestTarget != kNone) queue_.push({best, vertex, stamp_[vertex]});
+}
+
+/// After a neighbour has gone into `target`, which is a neighbour now. The costs of the others are as before.
+void InteriorCollapser::reconsider(uint32_t vertex, uint32_t gone, uint32_t target) {
+    if (blocked_[vertex].cost >= 0 || target_[vertex] == gone) {
+        blocked_[vertex] = {};
+        evaluate(vertex);
+        return;
+    }
+    const double cost = costOf(vertex, target);
+    if (cost > cost_[vertex] || (cost == cost_[vertex] && target >= target_[vertex])) return;
+    target_[vertex] = target;
+    cost_[vertex] = cost;
+    queue_.push({cost, vertex, ++stamp_[vertex]});
 }
 
 void InteriorCollapser::block(uint32_t vertex, uint32_t target, double cost) {
@@ -118,9 +148,7 @@ bool InteriorCollapser::mapWedges(uint32_t vertex, uint32_t target) {
 /// which the boundary is not collapsed, and in the uniform state.
 InteriorCollapser::Outcome InteriorCollapser::checkLinks(uint32_t vertex, uint32_t target) {
     const bool inPatch = isLinkedInPatch(vertex, target);
-    bool nearBoundary = isBoundary(target);
-    mesh_.forCorners(vertex, [&](uint32_t c) { nearBoundary |= isBoundary(mesh_.corner[PatchMesh::next(c)]); });
-    if (!nearBoundary) return inPatch ? Outcome::done : Outcome::refused;
+    if (!meetsBoundary_[vertex]) return inPatch ? Outcome::done : Outcome::refused;
     if (!isLinkedInUniform(vertex, target)) return Outcome::refused;
     return inPatch ? Outcome::done : Outcome::heldByMixed;
 }
@@ -150,54 +178,55 @@ bool InteriorCollapser::isLinkedInPatch(uint32_t vertex, uint32_t target) {
     return shared == 2 && common == 2 && !closesTetrahedron;
 }
 
+/// Whether the uniform state has an edge between two representatives.
 bool InteriorCollapser::hasUniformEdge(uint32_t a, uint32_t b) const {
-    bool found = false;
-    state_.forGroupCorners(a, [&](uint32_t patch, uint32_t c) {
-        if (found) return;
-        const PatchMesh& mesh = state_.patches[patch];
-        const uint32_t n = state_.uniformAt(mesh, PatchMesh::next(c)),
-                       p = state_.uniformAt(mesh, PatchMesh::previous(c));
-        found = (n == b && p != a && p != b) || (p == b && n != a && n != b);
+    if (state_.isBoundary[a] && (!state_.isBoundary[b] || state_.starOf(b).size() < state_.starOf(a).size())) {
+        std::swap(a, b);
+    }
+    return state_.anyOfStar(a, [&](const PatchMesh& mesh, uint32_t c) {
+        const bool meets =
+            state_.uniformAt(mesh, PatchMesh::next(c)) == b || state_.uniformAt(mesh, PatchMesh::previous(c)) == b;
+        return meets && state_.isDrawn(mesh, c);
     });
-    return found;
 }
 
+/// What the patch mesh cannot tell: neighbours in common that are several boundary vertices there.
 bool InteriorCollapser::isLinkedInUniform(uint32_t vertex, uint32_t target) {
     const uint32_t v = mesh_.position[vertex], w = state_.representative[mesh_.position[target]];
+    const bool targetIsBoundary = isBoundary(target);
     ring_.clear();
-    uint32_t faces = 0;
     std::array<uint32_t, 2> opposite = {kNone, kNone};
-    uint32_t shared = 0;
-    bool fits = true;
+    uint32_t faces = 0, shared = 0;
     mesh_.forCorners(vertex, [&](uint32_t c) {
-        const uint32_t n = state_.uniformAt(mesh_, PatchMesh::next(c)),
-                       p = state_.uniformAt(mesh_, PatchMesh::previous(c));
+        const uint32_t n = state_.uniformAt(mesh_, PatchMesh::next(c));
+        const uint32_t p = state_.uniformAt(mesh_, PatchMesh::previous(c));
         if (n == p || n == v || p == v) return;
         ++faces;
         if (n == w || p == w) {
             if (shared < 2) opposite[shared] = n == w ? p : n;
             ++shared;
         }
-        ring_.push_back(n);
-        ring_.push_back(p);
+        // Where no boundary vertex is near, the patch mesh has told.
+        for (const uint32_t x : {PatchMesh::next(c), PatchMesh::previous(c)}) {
+            const uint32_t local = mesh_.corner[x];
+            if (targetIsBoundary ? meetsBoundary_[local] : isBoundary(local))
+                ring_.push_back(state_.uniformAt(mesh_, x));
+        }
     });
     if (shared != 2 || opposite[0] == opposite[1]) return false;
     std::sort(ring_.begin(), ring_.end());
     ring_.erase(std::unique(ring_.begin(), ring_.end()), ring_.end());
     for (const uint32_t n : ring_) {
-        if (n == w || n == opposite[0] || n == opposite[1]) continue;
-        fits = fits && !(state_.isBoundary[n] && !state_.isBoundary[w] ? hasUniformEdge(w, n) : hasUniformEdge(n, w));
+        if (n != w && n != opposite[0] && n != opposite[1] && hasUniformEdge(n, w)) return false;
     }
-    if (!fits || faces != 3) return fits;
+    if (faces != 3) return true;
     // The third face becomes (w, opposite): it must not be there already.
-    bool closesTetrahedron = false;
-    state_.forGroupCorners(w, [&](uint32_t patch, uint32_t c) {
-        const PatchMesh& mesh = state_.patches[patch];
-        const uint32_t n = state_.uniformAt(mesh, PatchMesh::next(c)),
-                       p = state_.uniformAt(mesh, PatchMesh::previous(c));
-        closesTetrahedron |= (n == opposite[0] && p == opposite[1]) || (n == opposite[1] && p == opposite[0]);
+    return !state_.anyOfStar(w, [&](const PatchMesh& mesh, uint32_t c) {
+        const uint32_t n = state_.uniformAt(mesh, PatchMesh::next(c));
+        const uint32_t p = state_.uniformAt(mesh, PatchMesh::previous(c));
+        return ((n == opposite[0] && p == opposite[1]) || (n == opposite[1] && p == opposite[0])) &&
+               state_.isDrawn(mesh, c);
     });
-    return !closesTetrahedron;
 }
 
 InteriorCollapser::Outcome InteriorCollapser::checkStates(uint32_t vertex, uint32_t target, uint32_t level) {
@@ -223,16 +252,27 @@ void InteriorCollapser::collapse(uint32_t vertex, uint32_t target, uint32_t leve
     }
     state_.quadrics[state_.representative[w]].add(state_.quadrics[v]);
     ring_.clear();
-    mesh_.forCorners(vertex, [&](uint32_t c) { ring_.push_back(mesh_.corner[PatchMesh::next(c)]); });
+    mesh_.forCorners(vertex, [&](uint32_t c) {
+        ring_.push_back(mesh_.corner[PatchMesh::next(c)]);
+        const bool dies = ring_.back() == target || mesh_.corner[PatchMesh::previous(c)] == target;
+        if (!dies && isBoundary(target)) state_.starOf(state_.representative[w]).push_back({patch_, c});
+    });
     mesh_.collapse(vertex, target, wedges_);
+    if (isBoundary(target)) {
+        for (const uint32_t n : ring_) meetsBoundary_[n] = 1;
+    } else {
+        meetsBoundary_[target] |= meetsBoundary_[vertex];
+    }
     ++stamp_[vertex];
     ++counts_.collapses;
     for (const uint32_t n : ring_) {
         if (isBoundary(n)) {
             touched_.push_back(state_.representative[mesh_.position[n]]);
-        } else if (mesh_.head[n] != kNone) {
+        } else if (n == target) {
             blocked_[n] = {};
             evaluate(n);
+        } else {
+            reconsider(n, vertex, target);
         }
     }
 }

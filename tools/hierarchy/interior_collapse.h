@@ -47,11 +47,13 @@ private:
     enum class Outcome { done, refused, heldByMixed };
 
     void evaluate(uint32_t vertex);
+    void reconsider(uint32_t vertex, uint32_t gone, uint32_t target);
     double costOf(uint32_t vertex, uint32_t target) const;
     Outcome tryCollapse(uint32_t vertex, uint32_t target, uint32_t level);
     bool mapWedges(uint32_t vertex, uint32_t target);
     Outcome checkLinks(uint32_t vertex, uint32_t target);
     bool isLinkedInPatch(uint32_t vertex, uint32_t target);
+    void markBesideBoundary(uint32_t boundaryVertex);
     bool isLinkedInUniform(uint32_t vertex, uint32_t target);
     bool hasUniformEdge(uint32_t a, uint32_t b) const;
     Outcome checkStates(uint32_t vertex, uint32_t target, uint32_t level);
@@ -65,12 +67,15 @@ private:
     const uint32_t patch_;
     CollapseQueue queue_;
     std::vector<uint32_t> stamp_, target_;
+    std::vector<double> cost_; ///< of target_
     struct Blocked {
         double cost = -1; ///< targets up to here, and at equal cost up to that position, were refused
         uint32_t target = 0;
     };
     std::vector<Blocked> blocked_;
     std::vector<uint8_t> isDirty_;
+    std::vector<uint8_t> meetsBoundary_; ///< a boundary vertex is, or was, beside it
+    std::vector<glm::dvec3> points_;     ///< about the state's origin
     std::vector<uint32_t> dirty_;
     std::vector<std::pair<uint32_t, double>> held_; ///< vertices that only mixed states refused, and the cost
     std::vector<uint32_t> touched_;

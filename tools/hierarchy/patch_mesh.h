@@ -17,6 +17,7 @@ public:
     PatchMesh(const Mesh& mesh, std::span<const uint32_t> faces, std::vector<uint32_t>& localOf);
 
     uint32_t vertexCount() const { return uint32_t(position.size()); }
+    bool isLive(uint32_t f) const { return corner[3 * size_t(f)] != kNone; }
     static uint32_t next(uint32_t c) { return c % 3 == 2 ? c - 2 : c + 1; }
     static uint32_t previous(uint32_t c) { return c % 3 == 0 ? c + 2 : c - 1; }
 

@@ -1,6 +1,7 @@
 #include <xgc/bake/patches.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <map>
 #include <numeric>
@@ -16,114 +17,133 @@ namespace {
 constexpr int kRounds = 3;
 constexpr double kFill = 0.8; ///< faces a patch aimed at, of the bound: regions differ in size
 
-/// Faces of one cell (a part's share of one material), grouped by connected piece.
+/// A connected piece, its faces numbered in breadth-first order so that neighbours lie close in memory.
+struct Piece {
+    std::vector<uint32_t> faces;
+    std::vector<std::array<uint32_t, 3>> neighbours; ///< kNone where there is none; of more than three, three
+};
+
+/// Cuts a piece into regions grown from seeds.
+class Regions {
+public:
+    Regions(const Piece& piece, uint32_t count) : piece_(piece), seeds_(count) {
+        const size_t n = piece.faces.size();
+        for (uint32_t s = 0; s < count; ++s) seeds_[s] = uint32_t((2 * size_t(s) + 1) * n / (2 * size_t(count)));
+        grow();
+        for (int round = 0; round < kRounds; ++round) {
+            recentre();
+            grow();
+        }
+    }
+    const std::vector<uint32_t>& labels() const { return label_; }
+
+private:
+    /// All at once; a face goes to the first that reaches it.
+    void grow() {
+        label_.assign(piece_.faces.size(), kNone);
+        queue_ = seeds_;
+        for (uint32_t s = 0; s < seeds_.size(); ++s) label_[seeds_[s]] = s;
+        for (size_t i = 0; i < queue_.size(); ++i) {
+            for (const uint32_t g : piece_.neighbours[queue_[i]]) {
+                if (g == kNone || label_[g] != kNone) continue;
+                label_[g] = label_[queue_[i]];
+                queue_.push_back(g);
+            }
+        }
+    }
+
+    /// Moves the seeds to the faces farthest from their regions' rims: where walks from the rims end.
+    void recentre() {
+        queue_.clear();
+        reached_.assign(piece_.faces.size(), 0);
+        for (uint32_t f = 0; f < piece_.faces.size(); ++f) {
+            for (const uint32_t g : piece_.neighbours[f]) {
+                if (g == kNone || label_[g] == label_[f] || reached_[f]) continue;
+                reached_[f] = 1;
+                queue_.push_back(f);
+            }
+        }
+        for (size_t i = 0; i < queue_.size(); ++i) {
+            const uint32_t f = queue_[i];
+            seeds_[label_[f]] = f;
+            for (const uint32_t g : piece_.neighbours[f]) {
+                if (g == kNone || reached_[g] || label_[g] != label_[f]) continue;
+                reached_[g] = 1;
+                queue_.push_back(g);
+            }
+        }
+    }
+
+    const Piece& piece_;
+    std::vector<uint32_t> seeds_, label_, queue_;
+    std::vector<uint8_t> reached_;
+};
+
+/// Splits the faces of one cell (a part's share of one material) at a time.
 class Splitter {
 public:
-    Splitter(const Mesh& mesh, const Topology& topology, std::vector<uint32_t> faceCell, uint32_t maxFaces)
-        : topology_(topology), faceCell_(std::move(faceCell)), maxFaces_(maxFaces), label_(mesh.faces.size(), kNone),
-          distance_(mesh.faces.size(), kNone) {}
+    Splitter(const Topology& topology, std::span<const uint32_t> faceCell, uint32_t maxFaces)
+        : topology_(topology), faceCell_(faceCell), maxFaces_(maxFaces), number_(faceCell.size(), kNone) {}
 
-    /// Patches of the faces of one cell: numbers from 0 in `label`. Returns how many.
+    /// Numbers patches from 0 in `label`. Returns how many.
     uint32_t split(std::span<const uint32_t> faces, std::vector<uint32_t>& label) {
         uint32_t count = 0;
         uint32_t gathered = 0; // faces in the patch that takes small pieces
         uint32_t gathering = kNone;
         for (const uint32_t f : faces) {
-            if (distance_[f] != kNone) continue;
-            const std::vector<uint32_t> piece = walk(f);
-            if (piece.size() > maxFaces_) {
-                count = cut(piece, count, label);
+            if (number_[f] != kNone) continue;
+            walk(f);
+            const auto size = uint32_t(piece_.faces.size());
+            if (size > maxFaces_) {
+                count = cut(count, label);
                 continue;
             }
-            if (gathering == kNone || gathered + piece.size() > maxFaces_) {
+            if (gathering == kNone || gathered + size > maxFaces_) {
                 gathering = count++;
                 gathered = 0;
             }
-            gathered += uint32_t(piece.size());
-            for (const uint32_t g : piece) label[g] = gathering;
+            gathered += size;
+            for (const uint32_t g : piece_.faces) label[g] = gathering;
         }
         return count;
     }
 
 private:
-    template <typename Visit>
-    void forNeighbours(uint32_t f, const Visit& visit) const {
-        for (int k = 0; k < 3; ++k) {
-            for (const uint32_t g : topology_.facesOfEdge(topology_.faceEdges[f][k])) {
-                if (g != f && faceCell_[g] == faceCell_[f]) visit(g);
+    /// The connected piece of a face.
+    void walk(uint32_t start) {
+        piece_.faces.assign(1, start);
+        piece_.neighbours.clear();
+        number_[start] = 0;
+        for (size_t i = 0; i < piece_.faces.size(); ++i) {
+            const uint32_t f = piece_.faces[i];
+            std::array<uint32_t, 3> neighbours = {kNone, kNone, kNone};
+            for (int k = 0; k < 3; ++k) {
+                for (const uint32_t g : topology_.facesOfEdge(topology_.faceEdges[f][k])) {
+                    if (g == f || faceCell_[g] != faceCell_[f]) continue;
+                    if (number_[g] == kNone) {
+                        number_[g] = uint32_t(piece_.faces.size());
+                        piece_.faces.push_back(g);
+                    }
+                    neighbours[size_t(k)] = number_[g];
+                }
             }
+            piece_.neighbours.push_back(neighbours);
         }
     }
 
-    /// The connected piece of a face, in breadth-first order.
-    std::vector<uint32_t> walk(uint32_t start) {
-        std::vector<uint32_t> piece = {start};
-        distance_[start] = 0;
-        for (size_t i = 0; i < piece.size(); ++i) {
-            forNeighbours(piece[i], [&](uint32_t g) {
-                if (distance_[g] != kNone) return;
-                distance_[g] = 0;
-                piece.push_back(g);
-            });
-        }
-        return piece;
-    }
-
-    /// Grows regions from seeds at once; a face goes to the first that reaches it.
-    void grow(std::span<const uint32_t> piece, std::span<const uint32_t> seeds) {
-        for (const uint32_t f : piece) label_[f] = kNone;
-        queue_.assign(seeds.begin(), seeds.end());
-        for (uint32_t s = 0; s < seeds.size(); ++s) label_[seeds[s]] = s;
-        for (size_t i = 0; i < queue_.size(); ++i) {
-            forNeighbours(queue_[i], [&](uint32_t g) {
-                if (label_[g] != kNone) return;
-                label_[g] = label_[queue_[i]];
-                queue_.push_back(g);
-            });
-        }
-    }
-
-    /// The face of each region that is farthest from its rim: where a walk from the rims ends.
-    void recentre(std::span<const uint32_t> piece, std::vector<uint32_t>& seeds) {
-        queue_.clear();
-        for (const uint32_t f : piece) distance_[f] = kNone;
-        for (const uint32_t f : piece) {
-            bool rim = false;
-            forNeighbours(f, [&](uint32_t g) { rim |= label_[g] != label_[f]; });
-            if (!rim) continue;
-            distance_[f] = 0;
-            queue_.push_back(f);
-        }
-        for (size_t i = 0; i < queue_.size(); ++i) {
-            const uint32_t f = queue_[i];
-            seeds[label_[f]] = f;
-            forNeighbours(f, [&](uint32_t g) {
-                if (distance_[g] != kNone || label_[g] != label_[f]) return;
-                distance_[g] = distance_[f] + 1;
-                queue_.push_back(g);
-            });
-        }
-        for (const uint32_t f : piece) distance_[f] = 0;
-    }
-
-    uint32_t cut(std::span<const uint32_t> piece, uint32_t count, std::vector<uint32_t>& label) {
-        auto regions = uint32_t(double(piece.size()) / (maxFaces_ * kFill)) + 1;
-        regions = std::min<uint32_t>(std::max(regions, 2u), uint32_t(piece.size()));
-        std::vector<uint32_t> seeds(regions);
-        for (uint32_t s = 0; s < regions; ++s) seeds[s] = piece[(2 * size_t(s) + 1) * piece.size() / (2 * regions)];
-        grow(piece, seeds);
-        for (int round = 0; round < kRounds; ++round) {
-            recentre(piece, seeds);
-            grow(piece, seeds);
-        }
-        for (const uint32_t f : piece) label[f] = count + label_[f];
-        return count + regions;
+    uint32_t cut(uint32_t count, std::vector<uint32_t>& label) const {
+        const size_t size = piece_.faces.size();
+        const auto regions = std::max(2u, uint32_t(double(size) / (maxFaces_ * kFill)) + 1);
+        const Regions cut(piece_, std::min(regions, uint32_t(size)));
+        for (size_t i = 0; i < size; ++i) label[piece_.faces[i]] = count + cut.labels()[i];
+        return count + std::min(regions, uint32_t(size));
     }
 
     const Topology& topology_;
-    const std::vector<uint32_t> faceCell_;
+    const std::span<const uint32_t> faceCell_;
     const uint32_t maxFaces_;
-    std::vector<uint32_t> label_, distance_, queue_;
+    std::vector<uint32_t> number_; ///< of a face in its piece
+    Piece piece_;
 };
 
 } // namespace
@@ -151,7 +171,7 @@ PatchAssignment splitPatches(const Mesh& mesh, const Topology& topology, const S
     std::vector<uint32_t> at(start.begin(), start.end() - 1);
     for (uint32_t f = 0; f < faces.size(); ++f) faces[at[cells.facePatch[f]]++] = f;
 
-    Splitter splitter(mesh, topology, cells.facePatch, maxFaces);
+    Splitter splitter(topology, cells.facePatch, maxFaces);
     PatchAssignment out;
     out.facePatch.resize(mesh.faces.size());
     for (uint32_t c = 0; c < cells.patches.size(); ++c) {

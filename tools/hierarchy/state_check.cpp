@@ -85,13 +85,28 @@ bool StateCheck::isGood(const Pick& pick) const {
         after[k] = glm::dvec3(state_.mesh.positions[stops[k]->position]);
         before[k] = corners_[k].moves ? glm::dvec3(state_.mesh.positions[before_]) : after[k];
     }
+    return !isTurned(before, after);
+}
+
+/// Whether a triangle turns over, against what it was or against the input's, or loses its area.
+bool StateCheck::isTurned(const std::array<glm::dvec3, 3>& before, const std::array<glm::dvec3, 3>& after) const {
     const glm::dvec3 n = glm::cross(after[1] - after[0], after[2] - after[0]);
     const double length = glm::length(n);
-    if (length == 0) return false;
-    if (normal_ != glm::vec3(0) && glm::dot(n, glm::dvec3(normal_)) < kLeastBase * length) return false;
+    if (length == 0) return true;
+    if (normal_ != glm::vec3(0) && glm::dot(n, glm::dvec3(normal_)) < kLeastBase * length) return true;
     const glm::dvec3 m = glm::cross(before[1] - before[0], before[2] - before[0]);
     const double squared = glm::dot(m, m);
-    return squared == 0 || glm::dot(n, m) > kLeastTurn * length * std::sqrt(squared);
+    return squared > 0 && glm::dot(n, m) <= kLeastTurn * length * std::sqrt(squared);
+}
+
+StateCheck::Verdict StateCheck::checkInside(const PatchMesh& mesh, uint32_t face, const Move& move) const {
+    std::array<glm::dvec3, 3> before, after;
+    for (uint32_t k = 0; k < 3; ++k) {
+        const uint32_t p = state_.positionAt(mesh, 3 * face + k);
+        before[k] = glm::dvec3(state_.mesh.positions[p]);
+        after[k] = p == move.from ? glm::dvec3(state_.mesh.positions[move.to]) : before[k];
+    }
+    return isTurned(before, after) ? Verdict::badInUniform : Verdict::good;
 }
 
 StateCheck::Verdict StateCheck::checkPick(const Pick& pick, bool mixed) {

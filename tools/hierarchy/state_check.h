@@ -34,6 +34,8 @@ public:
         const PatchMesh& mesh = state_.patches[patch];
         patch_ = patch;
         normal_ = mesh.normal[face];
+        before_ = move.from;
+        if (!move.fromIsBoundary && isInside(mesh, face, move)) return checkInside(mesh, face, move);
         uint32_t picks = 1;
         for (int k = 0; k < 3; ++k) {
             const uint32_t wedge = mesh.wedge[3 * size_t(face) + uint32_t(k)];
@@ -51,7 +53,6 @@ public:
             }
             picks *= uint32_t(corner.stops.size());
         }
-        before_ = move.from;
         return picks == 1 ? checkPick({0, 0, 0}, false) : checkPicks(picks);
     }
 
@@ -71,6 +72,14 @@ private:
     };
     using Pick = std::array<uint32_t, 3>;
 
+    /// Whether no other patch sees a corner, before or after the move.
+    bool isInside(const PatchMesh& mesh, uint32_t face, const Move& move) const {
+        bool inside = !state_.isBoundary[move.to];
+        for (uint32_t k = 0; k < 3; ++k) inside = inside && !state_.isBoundary[state_.positionAt(mesh, 3 * face + k)];
+        return inside;
+    }
+    Verdict checkInside(const PatchMesh& mesh, uint32_t face, const Move& move) const;
+    bool isTurned(const std::array<glm::dvec3, 3>& before, const std::array<glm::dvec3, 3>& after) const;
     void addStops(uint32_t wedge, uint32_t position, Corner& corner);
     Verdict checkPicks(uint32_t picks);
     bool isPossible(const Pick& pick) const;

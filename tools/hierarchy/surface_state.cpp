@@ -102,6 +102,21 @@ void SurfaceState::classify(const Topology& topology) {
         isBoundary[topology.edges[e].x] = 1;
         isBoundary[topology.edges[e].y] = 1;
     }
+    starNumber.assign(isBoundary.size(), kNone);
+    for (uint32_t p = 0; p < isBoundary.size(); ++p) {
+        if (isBoundary[p]) makeBoundary(p);
+    }
+}
+
+void SurfaceState::makeBoundary(uint32_t position) {
+    isBoundary[position] = 1;
+    starNumber[position] = uint32_t(stars.size());
+    stars.emplace_back();
+    forGroupCorners(position, [&](uint32_t patch, uint32_t c) { stars.back().push_back({patch, c}); });
+}
+
+void SurfaceState::pruneStar(uint32_t r) {
+    std::erase_if(starOf(r), [&](const PatchCorner& c) { return !isDrawn(patches[c.patch], c.corner); });
 }
 
 } // namespace xgc::bake

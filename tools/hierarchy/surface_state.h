@@ -6,6 +6,8 @@
 
 #include <xgc/bake/patches.h>
 
+#include <algorithm>
+
 namespace xgc::bake {
 
 /// A surface half-way through a build.
@@ -21,6 +23,11 @@ struct SurfaceState {
     /// Where a position lies in a patch mesh.
     struct Occurrence {
         uint32_t patch, vertex;
+    };
+
+    /// A corner of a patch mesh.
+    struct PatchCorner {
+        uint32_t patch, corner;
     };
 
     SurfaceState(const Mesh& mesh, const Topology& topology, const PatchAssignment& assignment);
@@ -54,6 +61,38 @@ struct SurfaceState {
     }
     std::span<const uint32_t> wedgesOf(uint32_t position) const {
         return std::span(positionWedges).subspan(firstWedge[position], firstWedge[position + 1] - firstWedge[position]);
+    }
+
+    /// Makes a boundary vertex of one inside a patch.
+    void makeBoundary(uint32_t position);
+    /// The corners of the triangles that the uniform state draws around a representative on the boundary; also, until
+    /// `pruneStar`, some that it no longer draws.
+    std::vector<PatchCorner>& starOf(uint32_t r) { return stars[starNumber[r]]; }
+    const std::vector<PatchCorner>& starOf(uint32_t r) const { return stars[starNumber[r]]; }
+    void pruneStar(uint32_t r);
+
+    /// Whether `test(patch mesh, corner)` holds for any corner at a representative; among them may be some that the
+    /// uniform state does not draw.
+    template <typename Test>
+    bool anyOfStar(uint32_t r, const Test& test) const {
+        if (isBoundary[r]) {
+            return std::any_of(starOf(r).begin(), starOf(r).end(), [&](const PatchCorner& c) {
+                return patches[c.patch].isLive(c.corner / 3) && test(patches[c.patch], c.corner);
+            });
+        }
+        const Occurrence o = occurrences[firstOccurrence[r]];
+        const PatchMesh& patch = patches[o.patch];
+        for (uint32_t c = patch.head[o.vertex]; c != kNone; c = patch.link[c]) {
+            if (test(patch, c)) return true;
+        }
+        return false;
+    }
+    /// Whether the uniform state draws the triangle of a corner.
+    bool isDrawn(const PatchMesh& patch, uint32_t c) const {
+        if (!patch.isLive(c / 3)) return false;
+        const uint32_t a = uniformAt(patch, c), b = uniformAt(patch, PatchMesh::next(c));
+        const uint32_t d = uniformAt(patch, PatchMesh::previous(c));
+        return a != b && b != d && d != a;
     }
 
     /// Visits the positions whose representative is `r`.
@@ -92,6 +131,8 @@ private:
     std::vector<uint32_t> firstOccurrence;
     std::vector<Occurrence> occurrences;
     std::vector<uint32_t> firstWedge, positionWedges;
+    std::vector<uint32_t> starNumber; ///< a position: in stars, kNone inside patches
+    std::vector<std::vector<PatchCorner>> stars;
 };
 
 /// Sets the quadrics from faces, and from perpendicular planes at borders, seams, cuts and sharp folds.

@@ -127,7 +127,7 @@ void ComponentVanisher::vanish(uint32_t component, uint32_t level) {
     state_.domain[target] = domain;
     const uint32_t wedge = state_.wedgesOf(target).front();
     for (const uint32_t v : alive) {
-        state_.isBoundary[v] = 1;
+        if (!state_.isBoundary[v]) state_.makeBoundary(v);
         if (v == target) continue;
         state_.collapseLevel[v] = uint8_t(level);
         state_.parent[v] = target;
