@@ -44,8 +44,9 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
 } // namespace
 
 Nearest::Nearest(std::vector<glm::vec3> points, std::vector<glm::uvec3> triangles)
-    : points_(std::move(points)), triangles_(std::move(triangles)), device_(rtcNewDevice("threads=1")),
-      scene_(rtcNewScene(device_)) {
+    : points_(std::move(points)), triangles_(std::move(triangles)),
+      // No "threads=1": it holds all of TBB in the process to one thread for as long as the device lives.
+      device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
     if (!triangles_.empty()) {
         RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
         void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
