@@ -13,7 +13,7 @@ namespace xgc::bench {
 namespace {
 
 Source princeton(const std::filesystem::path& data, uint32_t number) {
-    return {fmt::format("psb{}", number), data / "psb" / "off" / fmt::format("{}.off", number), 0};
+    return {fmt::format("psb{}", number), data / "psb" / "off" / fmt::format("{}.off", number)};
 }
 
 /// Grows regions breadth first from their seeds: region of each face and the order in which faces were reached.
@@ -81,13 +81,13 @@ std::vector<Source> princetonAll(const std::filesystem::path& data) {
 }
 
 Source helmet(const std::filesystem::path& data) {
-    return {"helmet", data / "gltf/FlightHelmet/FlightHelmet.gltf", 0};
+    return {"helmet", data / "gltf/FlightHelmet/FlightHelmet.gltf"};
 }
 
 std::vector<Source> dragon() {
     const std::filesystem::path file = std::filesystem::path(XGC_SOURCE_DIR) / "build/npm/dragon.ply";
     if (!std::filesystem::exists(file)) return {};
-    return {{"dragon", file, 0}};
+    return {{"dragon", file}};
 }
 
 bake::Status load(const Source& source, Subject& out) {
@@ -99,9 +99,10 @@ bake::Status load(const Source& source, Subject& out) {
         model = bake::makeModel(which, source.faces);
     }
     out.name = source.name;
+    if (source.plain) model.attributes = {};
     if (bake::Status s = bake::weld(model, {}, out.mesh, out.weld); !s.ok()) return s;
     out.topology = bake::buildTopology(out.mesh);
-    out.parts = bake::segmentThesis(out.mesh, out.topology, {});
+    out.parts = source.plain ? bake::segmentNone(out.mesh) : bake::segmentThesis(out.mesh, out.topology, {});
     return {};
 }
 

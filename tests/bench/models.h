@@ -9,7 +9,7 @@
 
 namespace xgc::bench {
 
-/// A mesh to measure with, its parts made by HPO.
+/// A mesh to measure with, its parts made by HPO unless its source is plain.
 struct Subject {
     std::string name;
     bake::Mesh mesh;
@@ -23,6 +23,7 @@ struct Source {
     std::string name;
     std::filesystem::path file; ///< empty: the bundled model `name`
     uint32_t faces = 0;         ///< of the bundled model
+    bool plain = false;         ///< positions alone, one part: for what is timed
 };
 
 /// One model of each category of the Princeton segmentation benchmark, and one more: 20 files below `data`.

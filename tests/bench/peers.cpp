@@ -1,17 +1,94 @@
 #include "peers.h"
 
+#include <xgc/bake/export.h>
+#include <xgc/bake/import.h>
+
+#include <fmt/format.h>
 #include <meshoptimizer.h>
 
-namespace xgc::bench {
+#include <algorithm>
+#include <cstdlib>
 
-Surface meshoptSimplify(const Surface& surface, uint32_t faces) {
+namespace xgc::bench {
+namespace {
+
+bake::Model modelOf(const Surface& s) {
+    bake::Model model;
+    model.positions = s.points;
+    model.attributes.normals = s.normals;
+    model.attributes.uvs[0] = s.uvs;
+    model.triangles = s.triangles;
+    model.triangleFace.resize(s.triangles.size());
+    for (uint32_t f = 0; f < s.faceCount(); ++f) model.triangleFace[f] = f;
+    model.triangleMaterial.assign(s.triangles.size(), 0);
+    model.triangleNode.assign(s.triangles.size(), bake::kNone);
+    model.inputFaceCount = s.faceCount();
+    model.materials.resize(1);
+    return model;
+}
+
+} // namespace
+
+Peers::Peers(const Flags& flags, std::string model, const Surface& surface)
+    : flags_(flags), model_(std::move(model)), surface_(surface),
+      work_(std::filesystem::temp_directory_path() / fmt::format("xgc-bench-{}", model_)) {
+    if (!flags.exchange.empty()) {
+        std::filesystem::create_directories(flags.exchange);
+        if (bake::Status s = writePly(flags.exchange / (model_ + ".ply"), surface); !s.ok())
+            fmt::print(stderr, "{}\n", s.message);
+        std::ofstream(flags.exchange / (model_ + ".counts")).flush();
+    }
+    if (flags.gltfpack.empty()) return;
+    std::filesystem::create_directories(work_);
+    if (bake::Status s = bake::exportModel(modelOf(surface), work_ / "in.glb"); !s.ok())
+        fmt::print(stderr, "{}\n", s.message);
+}
+
+void Peers::request(uint32_t faces) const {
+    if (flags_.exchange.empty()) return;
+    std::ofstream counts(flags_.exchange / (model_ + ".counts"), std::ios::app);
+    counts << faces << '\n';
+}
+
+Surface Peers::meshoptimizer(uint32_t faces) const {
     constexpr float kNoLimit = 1e10f;
-    Surface out = surface;
-    const size_t indices = meshopt_simplify(&out.triangles[0].x, &surface.triangles[0].x, 3 * surface.triangles.size(),
-                                            &surface.points[0].x, surface.points.size(), sizeof(glm::vec3),
-                                            3 * size_t(faces), kNoLimit, 0, nullptr);
+    Surface out = surface_;
+    const size_t indices = meshopt_simplify(
+        &out.triangles[0].x, &surface_.triangles[0].x, 3 * surface_.triangles.size(), &surface_.points[0].x,
+        surface_.points.size(), sizeof(glm::vec3), 3 * size_t(faces), kNoLimit, 0, nullptr);
     out.triangles.resize(indices / 3);
     return out;
+}
+
+bool Peers::gltfpack(uint32_t faces, Surface& out) const {
+    const std::string command =
+        fmt::format("'{}' -i '{}' -o '{}' -si {:.9f} -se 1 -noq -kv >/dev/null 2>&1", flags_.gltfpack.string(),
+                    (work_ / "in.glb").string(), (work_ / "out.glb").string(), (faces + 0.5) / surface_.faceCount());
+    bake::Model model;
+    if (std::system(command.c_str()) != 0 || !bake::importModel(work_ / "out.glb", model).ok()) return false;
+    out = surfaceOf(model);
+    return true;
+}
+
+std::vector<Peer> Peers::at(uint32_t faces) const {
+    std::vector<Peer> peers;
+    peers.push_back({"meshopt_simplify 0.18", meshoptimizer(faces)});
+    Surface surface;
+    if (!flags_.gltfpack.empty() && gltfpack(faces, surface)) peers.push_back({"gltfpack", surface});
+    if (flags_.exchange.empty()) return peers;
+    const std::string prefix = fmt::format("{}.{}.", model_, faces);
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(flags_.exchange)) files.push_back(entry.path());
+    std::ranges::sort(files);
+    for (const std::filesystem::path& file : files) {
+        const std::string name = file.filename().string();
+        if (!name.starts_with(prefix) || file.extension() != ".ply") continue;
+        if (bake::Status s = readPly(file, surface); s.ok())
+            peers.push_back({name.substr(prefix.size(), name.size() - prefix.size() - 4), surface});
+        else
+            fmt::print(stderr, "{}\n", s.message);
+    }
+    return peers;
 }
 
 } // namespace xgc::bench

@@ -1,0 +1,68 @@
+#include "comparison.h"
+#include "sections.h"
+
+#include <fmt/format.h>
+
+namespace xgc::bench {
+namespace {
+
+// Weights with which attributes enter the cost, see BuildRequest.
+constexpr double kNormalWeight = 0.05, kUvWeight = 0.05;
+
+std::vector<Source> sourcesOf(const Flags& flags) {
+    std::vector<Source> sources{{"temple", {}, 60'000}};
+    if (flags.data.empty()) return sources;
+    sources.push_back(helmet(flags.data));
+    sources.push_back({"spot", flags.data / "mesh/spot.obj"});
+    sources.push_back({"fox", flags.data / "gltf/Fox.glb"});
+    return sources;
+}
+
+void print(const Comparison& c) {
+    const AttributeDeviation &a = c.ours.attributes, &b = c.theirs.attributes;
+    fmt::print("{:<8} {:>5} % {:>6} faces  {:<26} {:>6}  RMS {:.2f}  normals {:.2f} ({:.2f} deg)  UV {:.2f}  stretch "
+               "{:.2f} ({:.3f})\n",
+               c.model, c.target, c.ours.faces, c.program, c.theirs.faces, c.ours.rms / c.theirs.rms,
+               b.normalDegrees > 0 ? a.normalDegrees / b.normalDegrees : 0, a.normalDegrees,
+               b.uvRms > 0 ? a.uvRms / b.uvRms : 0, b.stretch > 0 ? a.stretch / b.stretch : 0, a.stretch);
+}
+
+} // namespace
+
+int benchAttributes(const Flags& flags) {
+    Csv csv(
+        flags, "attributes",
+        "placement,model,target_percent,level,faces,rms,normal_degrees,uv,stretch,program,program_faces,program_rms,"
+        "program_normal_degrees,program_uv,program_stretch");
+    for (const bool optimal : {false, true}) {
+        const char* placement = optimal ? "optimal" : "subset";
+        std::vector<Comparison> all;
+        for (const Source& source : sourcesOf(flags)) {
+            if (!flags.wantsModel(source.name)) continue;
+            Subject subject;
+            if (const bake::Status s = load(source, subject); !s.ok()) {
+                fmt::print(stderr, "{}\n", s.message);
+                return int(s.outcome);
+            }
+            const BuildRequest request{.optimal = optimal, .normalWeight = kNormalWeight, .uvWeight = kUvWeight};
+            for (const Comparison& c : compareLevels(flags, subject, request, true)) {
+                if (flags.each) print(c);
+                const AttributeDeviation &a = c.ours.attributes, &b = c.theirs.attributes;
+                csv.row(fmt::format("{},{},{},{},{},{:.6e},{:.4f},{:.6e},{:.5f},{},{},{:.6e},{:.4f},{:.6e},{:.5f}",
+                                    placement, c.model, c.target, c.level, c.ours.faces, c.ours.rms, a.normalDegrees,
+                                    a.uvRms, a.stretch, c.program, c.theirs.faces, c.theirs.rms, b.normalDegrees,
+                                    b.uvRms, b.stretch));
+                all.push_back(c);
+            }
+        }
+        const std::string over = fmt::format(", {} placement, over", placement);
+        printRatios("normal deviation" + over,
+                    ratiosOf(all, [](const Quality& q) { return q.attributes.normalDegrees; }));
+        printRatios("UV deviation" + over, ratiosOf(all, [](const Quality& q) { return q.attributes.uvRms; }));
+        printRatios("UV stretch" + over, ratiosOf(all, [](const Quality& q) { return q.attributes.stretch; }));
+        printRatios("RMS" + over, ratiosOf(all, [](const Quality& q) { return q.rms; }));
+    }
+    return 0;
+}
+
+} // namespace xgc::bench

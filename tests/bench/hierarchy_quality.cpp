@@ -1,0 +1,59 @@
+#include "comparison.h"
+#include "sections.h"
+
+#include <fmt/format.h>
+
+namespace xgc::bench {
+namespace {
+
+std::vector<Source> sourcesOf(const Flags& flags) {
+    std::vector<Source> sources;
+    if (!flags.data.empty()) {
+        sources = princetonSample(flags.data);
+        sources.push_back(helmet(flags.data));
+    }
+    for (Source& s : dragon()) sources.push_back(std::move(s));
+    return sources;
+}
+
+void printEach(const std::vector<Comparison>& all) {
+    for (const Comparison& c : all) {
+        fmt::print("{:<8} {:>5} % level {:>2} {:>7} faces  {:<28} {:>7} faces  RMS {:.3f} max {:.3f}{}\n", c.model,
+                   c.target, c.level, c.ours.faces, c.program, c.theirs.faces, c.ours.rms / c.theirs.rms,
+                   c.ours.max / c.theirs.max, c.equalFaces() ? "" : "  (counts differ: left out)");
+    }
+}
+
+} // namespace
+
+int benchQuality(const Flags& flags) {
+    Csv csv(flags, "quality",
+            "placement,model,target_percent,level,faces,rms,max,program,program_faces,program_rms,program_max");
+    for (const bool optimal : {false, true}) {
+        const char* placement = optimal ? "optimal" : "subset";
+        std::vector<Comparison> all;
+        for (const Source& source : sourcesOf(flags)) {
+            if (!flags.wantsModel(source.name)) continue;
+            Subject subject;
+            if (const bake::Status s = load(source, subject); !s.ok()) {
+                fmt::print(stderr, "{}\n", s.message);
+                return int(s.outcome);
+            }
+            const std::vector<Comparison> some = compareLevels(flags, subject, {.optimal = optimal}, false);
+            if (flags.each) printEach(some);
+            for (const Comparison& c : some) {
+                csv.row(fmt::format("{},{},{},{},{},{:.6e},{:.6e},{},{},{:.6e},{:.6e}", placement, c.model, c.target,
+                                    c.level, c.ours.faces, c.ours.rms, c.ours.max, c.program, c.theirs.faces,
+                                    c.theirs.rms, c.theirs.max));
+            }
+            all.insert(all.end(), some.begin(), some.end());
+        }
+        printRatios(fmt::format("RMS, {} placement, over", placement),
+                    ratiosOf(all, [](const Quality& q) { return q.rms; }));
+        printRatios(fmt::format("maximum, {} placement, over", placement),
+                    ratiosOf(all, [](const Quality& q) { return q.max; }));
+    }
+    return 0;
+}
+
+} // namespace xgc::bench
