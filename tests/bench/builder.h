@@ -3,19 +3,13 @@
 #include "models.h"
 
 #include <xgc/bake/asset_writer.h>
-#include <xgc/bake/hierarchy.h>
+#include <xgc/bake/default_hierarchy.h>
 
 namespace xgc::bench {
 
-/// What the benchmarks ask of the default builder.
-struct BuildRequest {
-    bool optimal = false;       ///< vertices where the quadric has its minimum, else the input's
-    uint32_t patchFaces = 2048; ///< bound on a patch; 0: a patch is a part
-    double normalWeight = 0;
-    double uvWeight = 0;
-};
-
-bake::Hierarchy build(const Subject& subject, const bake::Segmentation& parts, const BuildRequest& request = {});
+/// The default hierarchy over patches of the default size.
+bake::Hierarchy build(const Subject& subject, const bake::Segmentation& parts,
+                      const bake::HierarchyOptions& options = {});
 
 /// E of every patch and level.
 bake::PatchErrors measureErrors(const Subject& subject, const bake::Hierarchy& hierarchy);

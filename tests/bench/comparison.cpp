@@ -42,9 +42,9 @@ bool Comparison::equalFaces() const {
     return difference <= std::max(2.0, 0.01 * ours.faces);
 }
 
-std::vector<Comparison> compareLevels(const Flags& flags, const Subject& subject, const BuildRequest& request,
+std::vector<Comparison> compareLevels(const Flags& flags, const Subject& subject, const bake::HierarchyOptions& options,
                                       bool attributes) {
-    const bake::Hierarchy hierarchy = build(subject, subject.parts, request);
+    const bake::Hierarchy hierarchy = build(subject, subject.parts, options);
     const std::vector<uint32_t> counts = uniformFaces(subject.mesh, hierarchy);
     const DistanceReference reference(surfaceOf(subject.mesh));
     const Peers peers(flags, subject.name, reference.surface());

@@ -33,7 +33,7 @@ struct Comparison {
 };
 
 /// Compares a model's levels with every program that there is.
-std::vector<Comparison> compareLevels(const Flags& flags, const Subject& subject, const BuildRequest& request,
+std::vector<Comparison> compareLevels(const Flags& flags, const Subject& subject, const bake::HierarchyOptions& options,
                                       bool attributes);
 
 /// A figure of both, ours over theirs, by program and target, over the comparisons of equal counts.

@@ -6,7 +6,7 @@
 namespace xgc::bench {
 namespace {
 
-// Weights with which attributes enter the cost, see BuildRequest.
+// Weights with which attributes enter the cost, see HierarchyOptions.
 constexpr double kNormalWeight = 0.05, kUvWeight = 0.05;
 
 std::vector<Source> sourcesOf(const Flags& flags) {
@@ -34,8 +34,8 @@ int benchAttributes(const Flags& flags) {
         flags, "attributes",
         "placement,model,target_percent,level,faces,rms,normal_degrees,uv,stretch,program,program_faces,program_rms,"
         "program_normal_degrees,program_uv,program_stretch");
-    for (const bool optimal : {false, true}) {
-        const char* placement = optimal ? "optimal" : "subset";
+    for (const bake::Placement p : {bake::Placement::subset, bake::Placement::optimal}) {
+        const char* placement = p == bake::Placement::optimal ? "optimal" : "subset";
         std::vector<Comparison> all;
         for (const Source& source : sourcesOf(flags)) {
             if (!flags.wantsModel(source.name)) continue;
@@ -44,8 +44,11 @@ int benchAttributes(const Flags& flags) {
                 fmt::print(stderr, "{}\n", s.message);
                 return int(s.outcome);
             }
-            const BuildRequest request{.optimal = optimal, .normalWeight = kNormalWeight, .uvWeight = kUvWeight};
-            for (const Comparison& c : compareLevels(flags, subject, request, true)) {
+            bake::HierarchyOptions options;
+            options.placement = p;
+            options.normalWeight = kNormalWeight;
+            options.uvWeight = kUvWeight;
+            for (const Comparison& c : compareLevels(flags, subject, options, true)) {
                 if (flags.each) print(c);
                 const AttributeDeviation &a = c.ours.attributes, &b = c.theirs.attributes;
                 csv.row(fmt::format("{},{},{},{},{},{:.6e},{:.4f},{:.6e},{:.5f},{},{},{:.6e},{:.4f},{:.6e},{:.5f}",

@@ -29,8 +29,8 @@ void printEach(const std::vector<Comparison>& all) {
 int benchQuality(const Flags& flags) {
     Csv csv(flags, "quality",
             "placement,model,target_percent,level,faces,rms,max,program,program_faces,program_rms,program_max");
-    for (const bool optimal : {false, true}) {
-        const char* placement = optimal ? "optimal" : "subset";
+    for (const bake::Placement p : {bake::Placement::subset, bake::Placement::optimal}) {
+        const char* placement = p == bake::Placement::optimal ? "optimal" : "subset";
         std::vector<Comparison> all;
         for (const Source& source : sourcesOf(flags)) {
             if (!flags.wantsModel(source.name)) continue;
@@ -39,7 +39,9 @@ int benchQuality(const Flags& flags) {
                 fmt::print(stderr, "{}\n", s.message);
                 return int(s.outcome);
             }
-            const std::vector<Comparison> some = compareLevels(flags, subject, {.optimal = optimal}, false);
+            bake::HierarchyOptions options;
+            options.placement = p;
+            const std::vector<Comparison> some = compareLevels(flags, subject, options, false);
             if (flags.each) printEach(some);
             for (const Comparison& c : some) {
                 csv.row(fmt::format("{},{},{},{},{},{:.6e},{:.6e},{},{},{:.6e},{:.6e}", placement, c.model, c.target,
