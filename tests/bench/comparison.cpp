@@ -52,7 +52,6 @@ std::vector<Comparison> compareLevels(const Flags& flags, const Subject& subject
     for (const double target : kTargets) {
         const uint32_t level = nearestLevel(counts, target / 100 * subject.mesh.faceCount());
         if (level == bake::kNone || level == 0) continue;
-        peers.request(counts[level]);
         const Quality ours = qualityOf(reference, surfaceAt(subject.mesh, hierarchy, level), attributes);
         for (const Peer& peer : peers.at(counts[level])) {
             const Quality theirs = qualityOf(reference, peer.surface, attributes);

@@ -25,8 +25,8 @@ void printUsage(const char* program, const std::vector<std::string>& sections) {
                        "  --runs N          of what is timed\n"
                        "  --data FOLDER     the real meshes (default: $XGC_DATA, ../shared/data)\n"
                        "  --csv FOLDER      write results there, with --commit TEXT and --machine TEXT\n"
-                       "  --exchange FOLDER write MODEL.ply and MODEL.counts there, and compare with every\n"
-                       "                    MODEL.COUNT.PROGRAM.ply that is there\n"
+                       "  --outside COMMAND compare with other simplifiers too: given a PLY file, a count of faces\n"
+                       "                    and a folder, it writes FOLDER/PROGRAM.ply for each of them\n"
                        "  --beside COMMAND  time it in turn with the builder: given a PLY file, it prints seconds\n"
                        "  --gltfpack FILE   the program\n");
 }
@@ -67,8 +67,8 @@ bool parseFlags(int argc, char** argv, const std::vector<std::string>& sections,
             flags.data = value;
         } else if (name == "csv") {
             flags.csv = value;
-        } else if (name == "exchange") {
-            flags.exchange = value;
+        } else if (name == "outside") {
+            flags.outside = value;
         } else if (name == "beside") {
             flags.beside = value;
         } else if (name == "gltfpack") {

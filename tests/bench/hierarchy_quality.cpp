@@ -24,38 +24,45 @@ void printEach(const std::vector<Comparison>& all) {
     }
 }
 
+void writeRow(const Comparison& c, Csv& csv) {
+    csv.row(fmt::format("{},{},{},{},{:.6e},{:.6e},{},{},{:.6e},{:.6e}", c.model, c.target, c.level, c.ours.faces,
+                        c.ours.rms, c.ours.max, c.program, c.theirs.faces, c.theirs.rms, c.theirs.max));
+}
+
+int measure(const Flags& flags, bake::Placement placement, Csv& csv) {
+    bake::HierarchyOptions options;
+    options.placement = placement;
+    std::vector<Comparison> all;
+    for (const Source& source : sourcesOf(flags)) {
+        if (!flags.wantsModel(source.name)) continue;
+        Subject subject;
+        if (const bake::Status s = load(source, subject); !s.ok()) {
+            fmt::print(stderr, "{}\n", s.message);
+            return int(s.outcome);
+        }
+        const std::vector<Comparison> some = compareLevels(flags, subject, options, false);
+        if (flags.each) printEach(some);
+        for (const Comparison& c : some) writeRow(c, csv);
+        all.insert(all.end(), some.begin(), some.end());
+    }
+    printRatios("RMS over that of", ratiosOf(all, [](const Quality& q) { return q.rms; }));
+    printRatios("maximum over that of", ratiosOf(all, [](const Quality& q) { return q.max; }));
+    return 0;
+}
+
+constexpr const char* kColumns =
+    "model,target_percent,level,faces,rms,max,program,program_faces,program_rms,program_max";
+
 } // namespace
 
 int benchQuality(const Flags& flags) {
-    Csv csv(flags, "quality",
-            "placement,model,target_percent,level,faces,rms,max,program,program_faces,program_rms,program_max");
-    for (const bake::Placement p : {bake::Placement::subset, bake::Placement::optimal}) {
-        const char* placement = p == bake::Placement::optimal ? "optimal" : "subset";
-        std::vector<Comparison> all;
-        for (const Source& source : sourcesOf(flags)) {
-            if (!flags.wantsModel(source.name)) continue;
-            Subject subject;
-            if (const bake::Status s = load(source, subject); !s.ok()) {
-                fmt::print(stderr, "{}\n", s.message);
-                return int(s.outcome);
-            }
-            bake::HierarchyOptions options;
-            options.placement = p;
-            const std::vector<Comparison> some = compareLevels(flags, subject, options, false);
-            if (flags.each) printEach(some);
-            for (const Comparison& c : some) {
-                csv.row(fmt::format("{},{},{},{},{},{:.6e},{:.6e},{},{},{:.6e},{:.6e}", placement, c.model, c.target,
-                                    c.level, c.ours.faces, c.ours.rms, c.ours.max, c.program, c.theirs.faces,
-                                    c.theirs.rms, c.theirs.max));
-            }
-            all.insert(all.end(), some.begin(), some.end());
-        }
-        printRatios(fmt::format("RMS, {} placement, over", placement),
-                    ratiosOf(all, [](const Quality& q) { return q.rms; }));
-        printRatios(fmt::format("maximum, {} placement, over", placement),
-                    ratiosOf(all, [](const Quality& q) { return q.max; }));
-    }
-    return 0;
+    Csv csv(flags, "quality", kColumns);
+    return measure(flags, bake::Placement::subset, csv);
+}
+
+int benchOptimal(const Flags& flags) {
+    Csv csv(flags, "optimal", kColumns);
+    return measure(flags, bake::Placement::optimal, csv);
 }
 
 } // namespace xgc::bench

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include <unistd.h>
+
 namespace xgc::bench {
 namespace {
 
@@ -27,27 +29,23 @@ bake::Model modelOf(const Surface& s) {
     return model;
 }
 
-} // namespace
-
-Peers::Peers(const Flags& flags, std::string model, const Surface& surface)
-    : flags_(flags), model_(std::move(model)), surface_(surface),
-      work_(std::filesystem::temp_directory_path() / fmt::format("xgc-bench-{}", model_)) {
-    if (!flags.exchange.empty()) {
-        std::filesystem::create_directories(flags.exchange);
-        if (bake::Status s = writePly(flags.exchange / (model_ + ".ply"), surface); !s.ok())
-            fmt::print(stderr, "{}\n", s.message);
-        std::ofstream(flags.exchange / (model_ + ".counts")).flush();
-    }
-    if (flags.gltfpack.empty()) return;
-    std::filesystem::create_directories(work_);
-    if (bake::Status s = bake::exportModel(modelOf(surface), work_ / "in.glb"); !s.ok())
-        fmt::print(stderr, "{}\n", s.message);
+void report(const bake::Status& status) {
+    if (!status.ok()) fmt::print(stderr, "{}\n", status.message);
 }
 
-void Peers::request(uint32_t faces) const {
-    if (flags_.exchange.empty()) return;
-    std::ofstream counts(flags_.exchange / (model_ + ".counts"), std::ios::app);
-    counts << faces << '\n';
+} // namespace
+
+Peers::Peers(const Flags& flags, const std::string& model, const Surface& surface)
+    : flags_(flags), surface_(surface),
+      work_(std::filesystem::temp_directory_path() / fmt::format("xgc-bench-{}-{}", model, getpid())) {
+    std::filesystem::create_directories(work_);
+    if (!flags.outside.empty()) report(writePly(work_ / "in.ply", surface));
+    if (!flags.gltfpack.empty()) report(bake::exportModel(modelOf(surface), work_ / "in.glb"));
+}
+
+Peers::~Peers() {
+    std::error_code ignored;
+    std::filesystem::remove_all(work_, ignored);
 }
 
 Surface Peers::meshoptimizer(uint32_t faces) const {
@@ -75,20 +73,28 @@ std::vector<Peer> Peers::at(uint32_t faces) const {
     peers.push_back({"meshopt_simplify 0.18", meshoptimizer(faces)});
     Surface surface;
     if (!flags_.gltfpack.empty() && gltfpack(faces, surface)) peers.push_back({"gltfpack", surface});
-    if (flags_.exchange.empty()) return peers;
-    const std::string prefix = fmt::format("{}.{}.", model_, faces);
+    if (!flags_.outside.empty()) addOutside(faces, peers);
+    return peers;
+}
+
+void Peers::addOutside(uint32_t faces, std::vector<Peer>& peers) const {
+    const std::filesystem::path folder = work_ / "outside";
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+    const std::string command =
+        fmt::format("{} '{}' {} '{}'", flags_.outside, (work_ / "in.ply").string(), faces, folder.string());
+    if (std::system(command.c_str()) != 0) fmt::print(stderr, "failed: {}\n", command);
     std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(flags_.exchange)) files.push_back(entry.path());
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        if (entry.path().extension() == ".ply") files.push_back(entry.path());
+    }
     std::ranges::sort(files);
     for (const std::filesystem::path& file : files) {
-        const std::string name = file.filename().string();
-        if (!name.starts_with(prefix) || file.extension() != ".ply") continue;
-        if (bake::Status s = readPly(file, surface); s.ok())
-            peers.push_back({name.substr(prefix.size(), name.size() - prefix.size() - 4), surface});
-        else
-            fmt::print(stderr, "{}\n", s.message);
+        Surface surface;
+        const bake::Status read = readPly(file, surface);
+        report(read);
+        if (read.ok()) peers.push_back({file.stem().string(), std::move(surface)});
     }
-    return peers;
 }
 
 } // namespace xgc::bench

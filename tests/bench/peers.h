@@ -14,24 +14,26 @@ struct Peer {
 /// The programs that simplify a model beside xgc:
 /// - meshopt_simplify of the packaged meshoptimizer, default flags, no limit on the error;
 /// - gltfpack as a program (-si, no limit on the error, nothing quantised), where there is one;
-/// - programs outside, through the exchange folder: <model>.<count>.<program>.ply.
+/// - whatever the command of --outside runs: given the model as a PLY file, the count and an empty folder, it leaves a
+///   PLY file named after each program there, as writePly makes them.
 class Peers {
 public:
-    Peers(const Flags& flags, std::string model, const Surface& surface);
+    Peers(const Flags& flags, const std::string& model, const Surface& surface);
+    ~Peers();
+    Peers(const Peers&) = delete;
+    Peers& operator=(const Peers&) = delete;
 
     /// Results of at most about `faces` faces each; a program may stop short of that.
     std::vector<Peer> at(uint32_t faces) const;
-    /// Asks programs outside for a count.
-    void request(uint32_t faces) const;
 
 private:
     Surface meshoptimizer(uint32_t faces) const;
     bool gltfpack(uint32_t faces, Surface& out) const;
+    void addOutside(uint32_t faces, std::vector<Peer>& peers) const;
 
     const Flags& flags_;
-    std::string model_;
     const Surface& surface_;
-    std::filesystem::path work_; ///< files for gltfpack
+    std::filesystem::path work_; ///< files for the programs, removed at the end
 };
 
 } // namespace xgc::bench

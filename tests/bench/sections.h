@@ -8,6 +8,8 @@ namespace xgc::bench {
 
 /// Two-sided RMS and maximum of uniform levels beside other programs at equal face counts.
 int benchQuality(const Flags& flags);
+/// The same with vertices where the quadrics have their minimum.
+int benchOptimal(const Flags& flags);
 /// The same with normals and UVs, on models that have them.
 int benchAttributes(const Flags& flags);
 /// One part at full detail, the rest at 1 %: triangles over those that the levels have on their own.
