@@ -48,10 +48,6 @@ bool allZero(std::span<const std::byte> bytes) {
     return std::all_of(bytes.begin(), bytes.end(), [](std::byte b) { return b == std::byte(0); });
 }
 
-std::span<const SectionRecord> sectionsOf(std::span<const std::byte> bytes) {
-    return {at<SectionRecord>(bytes, sizeof(FileHeader)), at<FileHeader>(bytes, 0)->sectionCount};
-}
-
 /// Sections have rising ids, follow each other at the next multiple of 64 with zeros between, fill the tables and
 /// are unaltered: known or not.
 Status checkSections(std::span<const std::byte> bytes) {
@@ -142,14 +138,22 @@ Status readSections(AssetView& view) {
 }
 
 Status readTables(std::span<const std::byte> bytes, AssetView& view) {
-    if (Status s = checkHeader(bytes); !s.ok()) return s;
-    if (Status s = checkSections(bytes); !s.ok()) return s;
+    if (Status s = checkContainer(bytes); !s.ok()) return s;
     view.bytes = bytes;
     if (Status s = readSections(view); !s.ok()) return s;
     return checkTables(view);
 }
 
 } // namespace
+
+Status checkContainer(std::span<const std::byte> bytes) {
+    if (Status s = checkHeader(bytes); !s.ok()) return s;
+    return checkSections(bytes);
+}
+
+std::span<const SectionRecord> sectionsOf(std::span<const std::byte> bytes) {
+    return {at<SectionRecord>(bytes, sizeof(FileHeader)), at<FileHeader>(bytes, 0)->sectionCount};
+}
 
 Status openTables(std::span<const std::byte> bytes, AssetView& out) {
     AssetView view;

@@ -19,6 +19,12 @@ inline constexpr uint64_t alignUp(uint64_t offset) {
     return (offset + format::kAlignment - 1) / format::kAlignment * format::kAlignment;
 }
 
+/// Header and sections: where each lies, and that it is unaltered; their codecs are not looked at (open.cpp).
+Status checkContainer(std::span<const std::byte> bytes);
+
+/// Of bytes that passed `checkContainer`.
+std::span<const format::SectionRecord> sectionsOf(std::span<const std::byte> bytes);
+
 /// Relations within and between the tables (check_tables.cpp).
 Status checkTables(const AssetView& view);
 

@@ -10,7 +10,7 @@ namespace xgc::headless {
 namespace {
 
 bake::Status loadAsset(const std::filesystem::path& file, LoadedAsset& asset) {
-    const bake::Status status = bake::readFile(file, asset.bytes);
+    const bake::Status status = bake::readImage(file, asset.bytes);
     if (!status.ok()) return status;
     const Status opened = openAll(asset.bytes.span(), asset.view);
     if (opened.ok()) return {};

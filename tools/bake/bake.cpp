@@ -134,12 +134,23 @@ std::string provenance(const BakeOptions& options) {
         for (const PartImportance& i : options.importance) json["importance"][i.part] = fmt::format("{}", i.factor);
         if (options.importanceChannel >= 0) json["importanceChannel"] = options.importanceChannel;
     }
+    if (options.rounding.normalBits < 16) json["normalBits"] = options.rounding.normalBits;
+    if (options.rounding.uvBits > 0) json["uvBits"] = options.rounding.uvBits;
     return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 Status layOut(const BakeOptions& options, Work& work, BakeReport& report) {
     Status s = layOutAsset(work.mesh, work.parts, work.hierarchy, work.errors, report.weld.closed(),
                            provenance(options), work.bytes);
+    const bool rounds = options.rounding.normalBits < 16 || options.rounding.uvBits > 0;
+    if (s.ok() && rounds) s = roundAttributes(options.rounding, work.bytes);
+    report.fileBytes = report.imageBytes = work.bytes.size();
+    return s;
+}
+
+Status compress(const BakeOptions& options, Work& work, BakeReport& report) {
+    std::vector<std::byte> image = std::move(work.bytes);
+    Status s = compressAsset(image, options.compression, work.bytes);
     report.fileBytes = work.bytes.size();
     return s;
 }
@@ -164,6 +175,7 @@ Status bake(const BakeOptions& options, BakeReport& report) {
     if (s.ok()) s = stage("build", [&] { return buildHierarchy(options, work, report); });
     if (s.ok()) s = stage("measure", [&] { return measure(options, work, report); });
     if (s.ok()) s = stage("lay out", [&] { return layOut(options, work, report); });
+    if (s.ok() && options.compress) s = stage("compress", [&] { return compress(options, work, report); });
     if (s.ok()) judge(options, report);
     if (s.ok()) s = stage("write", [&] { return writeFileAtomically(options.output, work.bytes); });
     return s;

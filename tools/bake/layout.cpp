@@ -300,10 +300,7 @@ void addStreams(Layout& l) {
 
 /// No file that the runtime would refuse is handed out.
 Status checkOpens(std::span<const std::byte> bytes) {
-    AlignedBytes copy;
-    copy.blocks.resize((bytes.size() + 63) / 64);
-    copy.size = bytes.size();
-    std::memcpy(copy.blocks.data(), bytes.data(), bytes.size());
+    const AlignedBytes copy = alignedCopy(bytes);
     AssetView view;
     const xgc::Status s = openAll(copy.span(), view);
     if (s.ok()) return {};

@@ -106,6 +106,9 @@ public:
     void stream(format::StreamKind kind, format::StreamFormat format, uint32_t set, std::span<const T> elements) {
         addStream(kind, format, set, std::as_bytes(elements), uint32_t(elements.size()), sizeof(T));
     }
+    /// What a codec made of a section or stream of another file; its figures but codec and stored bytes stay.
+    void codedSection(const format::SectionRecord& record, format::Codec codec, std::span<const std::byte> stored);
+    void codedStream(const format::StreamRecord& record, format::Codec codec, std::span<const std::byte> stored);
     /// Sections and streams may come in any order; empty ones are left out.
     void finish(uint32_t levelCount, std::vector<std::byte>& out);
 

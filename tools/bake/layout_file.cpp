@@ -42,21 +42,38 @@ void FileBuilder::addStream(StreamKind kind, StreamFormat format, uint32_t set, 
     streams_.push_back({record, {bytes.begin(), bytes.end()}});
 }
 
+void FileBuilder::codedSection(const SectionRecord& record, Codec codec, std::span<const std::byte> stored) {
+    SectionRecord r = record;
+    r.codec = codec;
+    r.storedBytes = stored.size();
+    r.checksum = hash(stored);
+    sections_.push_back({r, {stored.begin(), stored.end()}});
+}
+
+void FileBuilder::codedStream(const StreamRecord& record, Codec codec, std::span<const std::byte> stored) {
+    StreamRecord r = record;
+    r.codec = codec;
+    r.storedBytes = stored.size();
+    streams_.push_back({r, {stored.begin(), stored.end()}});
+}
+
 void FileBuilder::finish(uint32_t levelCount, std::vector<std::byte>& out) {
     std::sort(streams_.begin(), streams_.end(), [](const Stream& a, const Stream& b) {
         return std::pair(a.record.kind, a.record.set) < std::pair(b.record.kind, b.record.set);
     });
-    uint64_t pageBytes = 0;
+    uint64_t pageBytes = 0, rawBytes = 0;
     std::vector<StreamRecord> streamTable;
     for (Stream& s : streams_) {
         s.record.offset = pageBytes;
         pageBytes = alignUp(pageBytes + s.record.storedBytes);
+        rawBytes = alignUp(rawBytes + s.record.rawBytes);
         streamTable.push_back(s.record);
     }
     // The page table is a section itself: its place must be known before its contents.
     PageRecord page = {};
     page.lastLevel = levelCount - 1;
-    page.storedBytes = page.rawBytes = pageBytes;
+    page.storedBytes = pageBytes;
+    page.rawBytes = rawBytes;
     page.streamCount = uint32_t(streamTable.size());
     section<PageRecord>(SectionId::pages, std::span(&page, 1));
     section<StreamRecord>(SectionId::streams, streamTable);

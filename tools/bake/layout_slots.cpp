@@ -1,5 +1,8 @@
 #include "bake/layout.h"
 
+#include <algorithm>
+#include <array>
+
 // A patch numbers its vertices by slots: the rows of its domains in their order, then those of its interior.
 
 namespace xgc::bake::layout {
@@ -51,7 +54,11 @@ void appendPatch(const Mesh& mesh, const Hierarchy& h, const Domains& domains, c
     for (const uint32_t d : domains.ofPatch[patch]) appendParents(h, rows, rows.ranges[d], map, parents);
     appendParents(h, rows, rows.ranges[domains.sets.size() + patch], map, parents);
     for (uint32_t i = faces.firstFace[patch]; i < faces.firstFace[patch + 1]; ++i) {
-        for (int k = 0; k < 3; ++k) corners.push_back(Slot(map.slotOf(mesh.faces[faces.order[i]][k])));
+        // From the lowest slot on, so that codecs need not tell where a face starts.
+        std::array<uint32_t, 3> face{};
+        for (int k = 0; k < 3; ++k) face[k] = map.slotOf(mesh.faces[faces.order[i]][k]);
+        std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+        for (const uint32_t slot : face) corners.push_back(Slot(slot));
     }
 }
 

@@ -1,4 +1,5 @@
 #include "bake/layout.h"
+#include "bake/octahedral.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,45 +18,6 @@ int16_t snorm16(double value) {
 
 uint8_t unorm8(double value) {
     return uint8_t(std::floor(std::clamp(value, 0.0, 1.0) * 255 + 0.5)); // NaN is clamped by the caller's check
-}
-
-double signOf(double value) {
-    return value < 0 ? -1.0 : 1.0;
-}
-
-/// Folds the lower half of the octahedron out, or back in: the same map.
-glm::dvec2 fold(const glm::dvec2& p) {
-    return {(1 - std::abs(p.y)) * signOf(p.x), (1 - std::abs(p.x)) * signOf(p.y)};
-}
-
-glm::dvec3 octahedralDecode(const glm::i16vec2& e) {
-    glm::dvec2 p(e.x / 32767.0, e.y / 32767.0);
-    const double z = 1 - std::abs(p.x) - std::abs(p.y);
-    if (z < 0) p = fold(p);
-    const glm::dvec3 n(p.x, p.y, z);
-    return n / std::sqrt(glm::dot(n, n));
-}
-
-/// The nearest of the four codes around the exact point.
-glm::i16vec2 octahedralEncode(const glm::vec3& normal) {
-    const glm::dvec3 n(normal);
-    const double sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
-    if (!(sum > 0) || !std::isfinite(sum)) return {0, 0};
-    glm::dvec2 p(n.x / sum, n.y / sum);
-    if (n.z < 0) p = fold(p);
-    const glm::dvec2 low = glm::floor(p * 32767.0);
-    glm::i16vec2 best(0);
-    double bestDot = -2 * sum;
-    for (int i = 0; i < 4; ++i) {
-        const glm::dvec2 code = glm::clamp(low + glm::dvec2(i & 1, i >> 1), -32767.0, 32767.0);
-        const glm::i16vec2 candidate(int16_t(code.x), int16_t(code.y));
-        const double dot = glm::dot(octahedralDecode(candidate), n);
-        if (dot > bestDot) {
-            bestDot = dot;
-            best = candidate;
-        }
-    }
-    return best;
 }
 
 glm::i16vec4 encodeTangent(const glm::vec4& t) {
@@ -90,7 +52,8 @@ void addVertexStreams(const Hierarchy& h, const Rows& rows, FileBuilder& file) {
     positions.reserve(rows.wedgeOf.size());
     for (const uint32_t wedge : rows.wedgeOf) positions.push_back(h.positions[h.wedgePosition[wedge]]);
     file.stream<glm::vec3>(StreamKind::position, StreamFormat::f32x3, 0, positions);
-    addColumn(a.normals, rows, StreamKind::normal, StreamFormat::snorm16x2, 0, file, octahedralEncode);
+    addColumn(a.normals, rows, StreamKind::normal, StreamFormat::snorm16x2, 0, file,
+              [](const glm::vec3& n) { return octahedralEncode(n); });
     addColumn(a.tangents, rows, StreamKind::tangent, StreamFormat::snorm16x4, 0, file, encodeTangent);
     for (uint32_t set = 0; set < a.uvs.size(); ++set) {
         addColumn(a.uvs[set], rows, StreamKind::uv, StreamFormat::f32x2, set, file, same);

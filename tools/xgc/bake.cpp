@@ -163,6 +163,15 @@ void addBake(CLI::App& app, Run& run) {
     bake->add_option("--weld", arguments->options.weld.tolerance, "Grid spacing of the weld, mesh units; 0: exact")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
+    bake->add_flag("--compress", arguments->options.compress,
+                   "Compress the file: a third of the size, decoded by xgc::load; without it, it can be mapped");
+    bake->add_option("--normal-bits", arguments->options.rounding.normalBits, "Round octahedral normals to these bits")
+        ->check(CLI::Range(8u, 16u))
+        ->capture_default_str();
+    bake->add_option("--uv-bits", arguments->options.rounding.uvBits,
+                     "Round UVs to multiples of 2^-BITS; 0: keep them as they are")
+        ->check(CLI::Range(0u, 23u))
+        ->capture_default_str();
     bake->add_option("--report", arguments->report, "Write a report as JSON");
     bake->add_option("--jobs", arguments->jobs, "Threads; 0: all cores")->capture_default_str();
     bake->add_flag("--quiet", arguments->quiet, "Print nothing but errors");

@@ -49,7 +49,16 @@ enum class SectionId : uint32_t {
     patchTiers = 70, ///< per patch and tier after the first: its firsts and counts in that tier's pages
 };
 
-enum class Codec : uint32_t { none = 0, zstd = 1, meshopt = 2 };
+/// How a section or stream lies in the file (FORMAT.md, "Codecs"). `open` reads none alone; xgc::load decodes the
+/// others.
+enum class Codec : uint32_t {
+    none = 0,
+    zstd = 1,    ///< a zstd frame
+    meshopt = 2, ///< reserved
+    rows = 3,    ///< vertex streams: RowsHeader, then a zstd frame of differences to the parent rows
+    faces = 4,   ///< corners: FacesHeader, then a zstd frame of codes
+    parents = 5, ///< parents: a zstd frame of distances
+};
 
 struct FileHeader {
     unsigned char magic[8];
@@ -274,5 +283,36 @@ struct StreamRecord {
     uint32_t reserved[3];
 };
 static_assert(sizeof(StreamRecord) == 64);
+
+/// What the lanes of a stream of Codec::rows are made of.
+enum class RowTransform : uint32_t {
+    none = 0,   ///< the lanes as they are
+    floats = 1, ///< bits of floats, turned so that they are ordered as the floats are
+    grid = 2,   ///< floats that are integers (32 bits, signed) times 2^parameter
+    snorm = 3,  ///< snorm16 of `parameter` bits (8..15), widened to 16 by repeating them
+};
+
+/// Before the zstd frame of a stream of Codec::rows.
+struct RowsHeader {
+    RowTransform transform;
+    int32_t parameter;
+    uint32_t planes;  ///< low bytes stored of each lane's difference; the others are zero
+    uint32_t base[4]; ///< the first row
+};
+static_assert(sizeof(RowsHeader) == 28);
+
+enum FacesFlags : uint32_t {
+    kRotations = 1u << 0, ///< a byte a face tells its first corner; else that is the lowest slot
+};
+
+/// Before the zstd frame of a stream of Codec::faces.
+struct FacesHeader {
+    uint32_t flags;      ///< FacesFlags
+    uint32_t missCount;  ///< faces that share no recent edge
+    uint32_t farCount;   ///< corners that are no recent vertex
+    uint32_t strayCount; ///< slots that lie in no run
+    uint32_t runBytes;   ///< of the table of runs
+};
+static_assert(sizeof(FacesHeader) == 20);
 
 } // namespace xgc::format

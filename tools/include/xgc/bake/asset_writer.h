@@ -29,7 +29,15 @@ struct AlignedBytes {
     std::vector<Block> blocks;
     size_t size = 0;
     std::span<const std::byte> span() const { return {reinterpret_cast<const std::byte*>(blocks.data()), size}; }
+    std::span<std::byte> writable() { return {reinterpret_cast<std::byte*>(blocks.data()), size}; }
 };
 Status readFile(const std::filesystem::path& file, AlignedBytes& out);
+AlignedBytes alignedBytes(size_t size);
+AlignedBytes alignedCopy(std::span<const std::byte> bytes);
+
+/// The image that `xgc::openAll` opens: the file itself, or what it decodes to where it is compressed.
+Status decodeImage(AlignedBytes&& file, AlignedBytes& out);
+/// Reads a file and decodes it so. The message names the file.
+Status readImage(const std::filesystem::path& file, AlignedBytes& out);
 
 } // namespace xgc::bake

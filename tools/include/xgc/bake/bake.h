@@ -1,6 +1,7 @@
 #pragma once
 
 #include <xgc/bake/asset_writer.h>
+#include <xgc/bake/compress.h>
 #include <xgc/bake/default_hierarchy.h>
 #include <xgc/bake/mesh.h>
 #include <xgc/bake/segment.h>
@@ -48,6 +49,9 @@ struct BakeOptions {
     /// Channel 0..3 of the first vertex colours in which artists paint importance: c counts 1 / (1 - c) times, 1 locks.
     /// -1: none.
     int importanceChannel = -1;
+    RoundingOptions rounding;
+    bool compress = false; ///< false: the file can be mapped and opened where it lies
+    CompressOptions compression;
     /// Told a stage's name and finished fraction, on the calling thread.
     std::function<void(const char* stage, double fraction)> progress;
     /// Set from anywhere (a signal handler) to stop at the next step; the target is then untouched.
@@ -82,6 +86,7 @@ struct BakeReport {
     uint32_t parts = 0;
     uint32_t patches = 0;
     uint64_t fileBytes = 0;
+    uint64_t imageBytes = 0; ///< of the file before it was compressed
     std::vector<Verdict> verdicts;
 };
 
