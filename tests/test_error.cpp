@@ -1,10 +1,13 @@
 #include "meshes/builders.h"
+#include "meshes/toy_hierarchy.h"
 
 #include <bake/surface_distance.h>
 #include <verify/nearest.h>
 #include <xgc/bake/error.h>
+#include <xgc/bake/thesis_hierarchy.h>
 
 #include <doctest/doctest.h>
+#include <tbb/global_control.h>
 
 #include <cmath>
 
@@ -36,31 +39,117 @@ std::vector<Triangle> soup(uint32_t count, Numbers& numbers) {
     return triangles;
 }
 
-/// A grid of one patch in which the centre vertex, lifted by `height`, collapses at level 1 into its neighbour.
-Hierarchy collapseCentre(Mesh& mesh, float height) {
-    const auto at = [&](float x, float y) {
-        for (uint32_t p = 0; p < mesh.positions.size(); ++p) {
-            if (mesh.positions[p].x == x && mesh.positions[p].y == y) return p;
-        }
-        return kNone;
-    };
-    const uint32_t centre = at(0.5f, 0.5f), neighbour = at(0.25f, 0.5f);
-    mesh.positions[centre].z = height;
+/// A hierarchy of one patch over a mesh without attributes (a wedge a position, in order), in which nothing collapses.
+Hierarchy still(const Mesh& mesh, uint32_t levelCount = 2) {
     Hierarchy h;
-    h.levelCount = 2;
+    h.levelCount = levelCount;
     h.positions = mesh.positions;
     h.collapseLevel.assign(mesh.positions.size(), kNeverCollapses);
     h.birthLevel.assign(mesh.positions.size(), 0);
     h.domain.assign(mesh.positions.size(), 0);
     h.wedgePosition = mesh.wedgePosition;
     h.wedgeParent.assign(mesh.wedgePosition.size(), kNone);
-    h.collapseLevel[centre] = 1;
-    h.wedgeParent[centre] = neighbour; // a mesh without attributes has one wedge a position, in order
     h.domainPatches = {{0}};
     h.patches.resize(1);
     h.facePatch.assign(mesh.faces.size(), 0);
-    h.levelThreshold.assign(2, 0.0f);
+    h.levelThreshold.assign(levelCount, 0.0f);
     return h;
+}
+
+void collapse(Hierarchy& h, uint32_t from, uint32_t into, uint8_t level) {
+    REQUIRE(from != kNone);
+    REQUIRE(into != kNone);
+    h.collapseLevel[from] = level;
+    h.wedgeParent[from] = into;
+}
+
+uint32_t vertexAt(const Mesh& mesh, float x, float y) {
+    for (uint32_t p = 0; p < mesh.positions.size(); ++p) {
+        if (mesh.positions[p].x == x && mesh.positions[p].y == y) return p;
+    }
+    return kNone;
+}
+
+float errorAt(const PatchErrors& errors, const Hierarchy& h, uint32_t patch, uint32_t level) {
+    return errors.values[size_t(patch) * h.levelCount + level];
+}
+
+PatchErrors measured(const Mesh& mesh, const Hierarchy& h) {
+    return measureErrors(mesh, buildTopology(mesh), h);
+}
+
+glm::vec3 pointOf(const Triangle& t, Numbers& numbers) {
+    float u = numbers.next() * 0.5f + 0.5f, v = numbers.next() * 0.5f + 0.5f;
+    if (u + v > 1) u = 1 - u, v = 1 - v;
+    return t.a + u * (t.b - t.a) + v * (t.c - t.a);
+}
+
+std::vector<Triangle> trianglesOf(const Hierarchy& h, const std::vector<glm::uvec3>& wedges) {
+    std::vector<Triangle> out;
+    const auto at = [&](uint32_t w) { return h.positions[h.wedgePosition[w]]; };
+    for (const glm::uvec3& t : wedges) out.push_back({at(t.x), at(t.y), at(t.z)});
+    return out;
+}
+
+/// The largest sampled deviation of each patch at a level, both ways.
+std::vector<double> sampledErrors(const Mesh& mesh, const Hierarchy& h, uint32_t level, uint32_t samples) {
+    const DrawnSurface drawn = drawSurface(mesh, h, std::vector<uint8_t>(h.patchCount(), uint8_t(level)));
+    const std::vector<Triangle> base = trianglesOf(h, mesh.faces), now = trianglesOf(h, drawn.triangles);
+    const SurfaceDistance input(base), surface(now);
+    std::vector<double> worst(h.patchCount(), 0.0);
+    Numbers numbers;
+    const auto sample = [&](const Triangle& t, uint32_t face, const SurfaceDistance& other) {
+        double& patch = worst[h.facePatch[face]];
+        for (const glm::vec3& corner : {t.a, t.b, t.c}) patch = std::max(patch, other.nearest(corner).squared);
+        for (uint32_t i = 0; i < samples; ++i) {
+            patch = std::max(patch, other.nearest(pointOf(t, numbers)).squared);
+        }
+    };
+    if (now.empty()) return worst;
+    for (uint32_t f = 0; f < base.size(); ++f) sample(base[f], f, surface);
+    for (uint32_t i = 0; i < now.size(); ++i) sample(now[i], drawn.face[i], input);
+    for (double& w : worst) w = std::sqrt(w);
+    return worst;
+}
+
+/// No sampled deviation lies beyond its bound, which never falls. Returns the median of bound over sample.
+double checkBounds(const Mesh& mesh, const Hierarchy& h, uint32_t samples) {
+    const PatchErrors errors = measured(mesh, h);
+    std::vector<double> ratios;
+    for (uint32_t level = 1; level < h.levelCount; ++level) {
+        const std::vector<double> sampled = sampledErrors(mesh, h, level, samples);
+        for (uint32_t p = 0; p < h.patchCount(); ++p) {
+            const float bound = errorAt(errors, h, p, level);
+            CHECK(bound >= errorAt(errors, h, p, level - 1));
+            CHECK(sampled[p] <= bound + 1e-6);
+            if (sampled[p] > 1e-4) ratios.push_back(bound / sampled[p]);
+        }
+    }
+    if (ratios.empty()) return 1;
+    std::sort(ratios.begin(), ratios.end());
+    return ratios[ratios.size() / 2];
+}
+
+Model bumpy(Model model, float height) {
+    Numbers numbers;
+    for (glm::vec3& p : model.positions) {
+        const float wave = std::sin(7 * p.x + 1) * std::cos(5 * p.y) * std::sin(6 * p.z + 2 + 3 * p.x);
+        p *= 1 + height * wave;
+        p.z += height * std::sin(5 * p.x) * std::cos(6 * p.y);
+    }
+    return model;
+}
+
+void append(Model& model, const Model& other, const glm::vec3& shift, float scale) {
+    const auto first = uint32_t(model.positions.size());
+    for (const glm::vec3& p : other.positions) model.positions.push_back(p * scale + shift);
+    for (const glm::uvec3& t : other.triangles) model.triangles.push_back(t + first);
+    model = test::modelOf(std::move(model.positions), std::move(model.triangles));
+}
+
+Model tetrahedron() {
+    return test::modelOf({{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}},
+                         {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}});
 }
 
 } // namespace
@@ -116,26 +205,148 @@ TEST_CASE("the tree finds what brute force finds, and so does Embree") {
     CHECK(std::isinf(Nearest({}, {}).distance({0, 0, 0})));
 }
 
-TEST_CASE("a collapsed bump costs 1.3 times its height, a flat collapse nothing") {
-    Mesh flat = test::welded(test::grid(4));
-    const Hierarchy none = collapseCentre(flat, 0.0f);
-    REQUIRE(checkHierarchy(flat, none).ok());
-    const PatchErrors still = estimateErrors(flat, none);
-    CHECK(still.values[0] == 0.0f);
-    CHECK(still.values[1] < 1e-7f);
+TEST_CASE("a collapsed tent costs its height, a flat collapse nothing") {
+    for (const float height : {0.0f, 0.1f}) {
+        Mesh mesh = test::welded(test::grid(4));
+        const uint32_t centre = vertexAt(mesh, 0.5f, 0.5f);
+        mesh.positions[centre].z = height;
+        Hierarchy h = still(mesh);
+        collapse(h, centre, vertexAt(mesh, 0.25f, 0.5f), 1);
+        REQUIRE(checkHierarchy(mesh, h).ok());
+        const PatchErrors errors = measured(mesh, h);
+        CHECK_FALSE(errors.estimate);
+        CHECK(errorAt(errors, h, 0, 0) == 0.0f);
+        CHECK(errorAt(errors, h, 0, 1) >= height);
+        CHECK(errorAt(errors, h, 0, 1) <= height * 1.001f + 1e-6f);
+    }
+}
 
-    Mesh bump = test::welded(test::grid(4));
-    const Hierarchy one = collapseCentre(bump, 0.1f);
-    const PatchErrors errors = estimateErrors(bump, one);
-    CHECK(errors.estimate);
-    CHECK(errors.values[0] == 0.0f);
-    CHECK(errors.values[1] == doctest::Approx(0.13).epsilon(1e-5));
+TEST_CASE("a spike costs its height, though all its neighbours stay") {
+    Mesh mesh = test::welded(test::sphere(8));
+    uint32_t top = 0;
+    for (uint32_t p = 0; p < mesh.positions.size(); ++p) {
+        if (mesh.positions[p].z > mesh.positions[top].z) top = p;
+    }
+    uint32_t neighbour = kNone;
+    for (uint32_t f = 0; f < mesh.faceCount() && neighbour == kNone; ++f) {
+        const glm::uvec3 p = mesh.facePositions(f);
+        for (int k = 0; k < 3; ++k) {
+            if (p[k] == top) neighbour = p[(k + 1) % 3];
+        }
+    }
+    mesh.positions[top].z = 3;
+    Hierarchy h = still(mesh);
+    collapse(h, top, neighbour, 1);
+    const double sampled = sampledErrors(mesh, h, 1, 50).front();
+    CHECK(sampled > 1.9);
+    const float bound = errorAt(measured(mesh, h), h, 0, 1);
+    CHECK(bound >= sampled);
+    CHECK(bound <= sampled * 1.02);
+}
+
+TEST_CASE("a component that vanishes costs its distance to what is left") {
+    Model model = test::sphere(6);
+    append(model, tetrahedron(), {2, 0, 0}, 0.1f);
+    const Mesh mesh = test::welded(model);
+    const auto first = uint32_t(mesh.positions.size() - 4);
+    Hierarchy h = still(mesh, 4);
+    h.patches.resize(2);
+    h.domainPatches = {{0}, {1}};
+    for (uint32_t f = mesh.faceCount() - 4; f < mesh.faceCount(); ++f) h.facePatch[f] = 1;
+    for (uint32_t p = first; p < mesh.positions.size(); ++p) h.domain[p] = 1;
+    collapse(h, first + 1, first, 2); // two faces, back to back, are left and then none
+    collapse(h, first + 2, first, 3);
+    const PatchErrors errors = measured(mesh, h);
+    for (const uint32_t level : {2u, 3u}) {
+        const double sampled = sampledErrors(mesh, h, level, 500)[1];
+        CHECK(errorAt(errors, h, 1, level) >= sampled);
+        CHECK(errorAt(errors, h, 1, level) <= sampled * 1.15);
+    }
+    CHECK(errorAt(errors, h, 1, 3) >= 1.1f); // the farthest corner lies at 2.1
+    CHECK(errorAt(errors, h, 0, 3) < 1e-6f);
+}
+
+TEST_CASE("where nothing is left, the error is the diagonal of the bounds") {
+    const Mesh mesh = test::welded(tetrahedron());
+    Hierarchy h = still(mesh);
+    for (uint32_t p = 1; p < 4; ++p) collapse(h, p, 0, 1);
+    CHECK(errorAt(measured(mesh, h), h, 0, 1) == doctest::Approx(std::sqrt(12.0)));
+}
+
+TEST_CASE("a border that coarsens counts on both sides of the old one") {
+    // A corner cut off leaves input without surface; a dent filled leaves surface without input.
+    for (const float y : {-0.2f, 0.2f}) {
+        Mesh mesh = test::welded(test::grid(4));
+        const uint32_t v = vertexAt(mesh, 0.5f, 0.0f), into = vertexAt(mesh, 0.25f, 0.0f);
+        mesh.positions[v].y = y;
+        Hierarchy h = still(mesh);
+        collapse(h, v, into, 1);
+        const double sampled = sampledErrors(mesh, h, 1, 500).front();
+        const float bound = errorAt(measured(mesh, h), h, 0, 1);
+        CHECK(sampled > 0.1);
+        CHECK(bound >= sampled);
+        CHECK(bound <= sampled * 1.15);
+    }
+}
+
+TEST_CASE("a sheet whose two sides lie close is covered on both") {
+    // A flat box: its sides are nearer to each other than the errors are large.
+    Model model = test::cube(8);
+    for (glm::vec3& p : model.positions) p = {p.x, p.y, p.z * 0.02f + 0.2f * p.x * p.x};
+    const Mesh mesh = test::welded(model);
+    for (uint32_t seed = 1; seed < 6; ++seed) {
+        checkBounds(mesh, test::toyHierarchy(mesh, test::slabs(mesh, 2), {.seed = seed}), 10);
+    }
+}
+
+TEST_CASE("no deviation lies beyond the bound, whatever a hierarchy does") {
+    Model components = bumpy(test::sphere(6), 0.1f);
+    for (uint32_t i = 0; i < 12; ++i) {
+        append(components, i % 2 ? test::sphere(2) : tetrahedron(), {1.5f, 0.3f * float(i), 0.1f * float(i)}, 0.1f);
+    }
+    Model crossed = test::grid(6); // sheets that share an edge: four faces a piece
+    append(crossed, test::grid(6), {0, 0, 0}, 1);
+    for (size_t i = crossed.positions.size() / 2; i < crossed.positions.size(); ++i) {
+        glm::vec3& p = crossed.positions[i];
+        p = {p.x, 0.5f, p.y - 0.5f};
+    }
+    const Model models[] = {bumpy(test::sphere(8), 0.2f), bumpy(test::grid(12), 0.3f), bumpy(test::cube(5), 0.1f),
+                            components, crossed};
+    for (const Model& model : models) {
+        const Mesh mesh = test::welded(model);
+        for (uint32_t seed = 1; seed <= 6; ++seed) {
+            test::ToyOptions options{.seed = seed, .levelCount = 9, .share = 0.3f};
+            options.makeVertices = seed % 2 == 0;
+            options.lockBoundaries = seed == 3;
+            checkBounds(mesh, test::toyHierarchy(mesh, test::slabs(mesh, 1 + seed % 4), options), 6);
+        }
+    }
+}
+
+TEST_CASE("the bounds of the thesis's hierarchy are tight") {
+    const Mesh mesh = test::welded(bumpy(test::sphere(20), 0.05f));
+    const Hierarchy h = buildThesisHierarchy(mesh, buildTopology(mesh), test::slabs(mesh, 3), {});
+    REQUIRE(h.levelCount > 3);
+    CHECK(checkBounds(mesh, h, 20) <= 1.2);
+}
+
+TEST_CASE("the result does not depend on the threads") {
+    const Mesh mesh = test::welded(bumpy(test::sphere(40), 0.05f));
+    const Hierarchy h = test::toyHierarchy(mesh, test::slabs(mesh, 5), {.levelCount = 8, .share = 0.3f});
+    PatchErrors alone;
+    {
+        const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+        alone = measured(mesh, h);
+    }
+    const tbb::global_control many(tbb::global_control::max_allowed_parallelism, 8);
+    for (int i = 0; i < 3; ++i) CHECK(measured(mesh, h).values == alone.values);
 }
 
 TEST_CASE("a measurement that is told to stop stops") {
-    Mesh mesh = test::welded(test::grid(4));
-    const Hierarchy h = collapseCentre(mesh, 0.1f);
+    const Mesh mesh = test::welded(test::grid(4));
+    Hierarchy h = still(mesh, 3);
+    collapse(h, vertexAt(mesh, 0.5f, 0.5f), vertexAt(mesh, 0.25f, 0.5f), 1);
     int calls = 0;
-    estimateErrors(mesh, h, [&](double) { return ++calls < 1; });
+    measureErrors(mesh, buildTopology(mesh), h, [&](double) { return ++calls < 1; });
     CHECK(calls == 1);
 }

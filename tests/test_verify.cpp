@@ -35,8 +35,9 @@ void bakeSphere(Baked& baked, bool honest) {
     for (glm::vec3& p : model.positions) p *= 1 + 0.1f * p.x * p.y;
     baked.mesh = test::welded(model);
     const Segmentation parts = test::slabs(baked.mesh, 3);
-    const Hierarchy h = buildThesisHierarchy(baked.mesh, buildTopology(baked.mesh), parts, {});
-    PatchErrors errors = estimateErrors(baked.mesh, h);
+    const Topology topology = buildTopology(baked.mesh);
+    const Hierarchy h = buildThesisHierarchy(baked.mesh, topology, parts, {});
+    PatchErrors errors = measureErrors(baked.mesh, topology, h);
     if (!honest) std::fill(errors.values.begin(), errors.values.end(), 0.0f);
     layOut(baked, parts, h, errors);
 }
@@ -46,7 +47,7 @@ void bakeToy(Baked& baked, const Model& model) {
     baked.mesh = test::welded(model);
     const Segmentation parts = test::slabs(baked.mesh, 4);
     const Hierarchy h = test::toyHierarchy(baked.mesh, parts, {});
-    layOut(baked, parts, h, estimateErrors(baked.mesh, h));
+    layOut(baked, parts, h, measureErrors(baked.mesh, buildTopology(baked.mesh), h));
 }
 
 VerifyReport verify(const AssetView& view) {

@@ -161,6 +161,7 @@ inline bake::Hierarchy toyHierarchy(const bake::Mesh& mesh, const bake::Segmenta
 /// Errors that rise by a step a level, so that they are easy to tell apart.
 inline bake::PatchErrors toyErrors(const bake::Hierarchy& h) {
     bake::PatchErrors errors;
+    errors.estimate = true;
     for (uint32_t p = 0; p < h.patchCount(); ++p) {
         for (uint32_t level = 0; level < h.levelCount; ++level) errors.values.push_back(float(level) * 0.01f);
     }

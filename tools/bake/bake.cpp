@@ -86,7 +86,7 @@ Status buildHierarchy(const BakeOptions& options, Work& work, BakeReport& report
 }
 
 Status measure(const BakeOptions& options, Work& work, BakeReport& report) {
-    work.errors = estimateErrors(work.mesh, work.hierarchy, [&](double fraction) {
+    work.errors = measureErrors(work.mesh, work.topology, work.hierarchy, [&](double fraction) {
         if (options.progress) options.progress("measure", fraction);
         return !isCancelled(options);
     });

@@ -140,7 +140,7 @@ void printText(const std::string& file, const AssetView& asset) {
         fmt::print("{:>6} {:>12} {:>8.2f} {:>12.4g}\n", l, asset.levels[l].faceCount,
                    100 * asset.levels[l].faceCount / faces, asset.levels[l].maxError);
     }
-    if (record.flags & format::kErrorIsEstimate) fmt::print("errors are estimates: largest sampled deviation x 1.3\n");
+    if (record.flags & format::kErrorIsEstimate) fmt::print("errors are estimates, not bounds\n");
     fmt::print("{:>6} {:>10} {:>8} {:>10}  {}\n", "part", "faces", "patches", "neighbours", "name");
     for (uint32_t p = 0; p < record.partCount; ++p) {
         const format::PartRecord& part = asset.parts[p];

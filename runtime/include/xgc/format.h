@@ -85,7 +85,7 @@ struct SectionRecord {
 static_assert(sizeof(SectionRecord) == 48);
 
 enum AssetFlags : uint32_t {
-    kErrorIsEstimate = 1u << 0, ///< E is the largest sampled deviation x 1.3, not a bound
+    kErrorIsEstimate = 1u << 0, ///< E is a guess, not a bound
     kInputIsClosed = 1u << 1,   ///< every edge of level 0 is used an even number of times
 };
 

@@ -10,7 +10,7 @@ namespace xgc::bake {
 /// E of each patch and level: entry patch * levelCount + level, mesh units, never falling with the level.
 struct PatchErrors {
     std::vector<float> values;
-    bool estimate = true; ///< largest sampled deviation x 1.3, not a bound
+    bool estimate = false; ///< the values are guesses, not bounds: the file says so
 };
 
 /// Lays an asset out as runtime/FORMAT.md says: the bytes of an `.xgc` file, uncompressed. The same input gives

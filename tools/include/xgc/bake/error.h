@@ -7,11 +7,13 @@
 
 namespace xgc::bake {
 
-/// Estimates E(patch, level) by sampling, in the uniform state of each level: from vertices, edge midpoints and
-/// centroids of the drawn patch to the input surface, and from those of its base faces to the whole
-/// drawn surface; the largest deviation, times 1.3, never falling with the level. `progress` is told the finished
-/// fraction and stops the work by returning false.
-PatchErrors estimateErrors(const Mesh& mesh, const Hierarchy& hierarchy,
-                           const std::function<bool(double)>& progress = {});
+/// Measures E(patch, level) in the uniform state of each level: a bound for the distance from every point of the drawn
+/// patch to the input surface and from every point of the patch's base faces to the whole drawn surface, up to the
+/// rounding of floats; never falling with the level. Patches that vanish keep an error: their base faces' distance to
+/// what is drawn. Where a level draws nothing at all, it is the diagonal of the mesh's bounds. Parallel (TBB), with the
+/// same result for any number of threads. `progress` is told the finished fraction and stops the work by returning
+/// false.
+PatchErrors measureErrors(const Mesh& mesh, const Topology& topology, const Hierarchy& hierarchy,
+                          const std::function<bool(double)>& progress = {});
 
 } // namespace xgc::bake

@@ -1,0 +1,156 @@
+#include "direct_bound.h"
+
+#include "segments.h"
+
+#include <limits>
+
+namespace xgc::bake {
+namespace {
+
+constexpr double kCloseEnough = 1.1 * 1.1; ///< a bound of this many times what is known to be reached will do
+constexpr uint32_t kMostPieces = 500;
+
+double squaredTo(const Triangle& t, const glm::dvec3& p) {
+    return squaredDistance(p, t.a, t.b, t.c);
+}
+
+} // namespace
+
+double DirectBound::bound(const Piece& piece, double enough) {
+    candidates_.clear();
+    for (const NearTriangle& n : piece.near) {
+        if (std::find(candidates_.begin(), candidates_.end(), n.triangle) == candidates_.end())
+            candidates_.push_back(n.triangle);
+    }
+    double least = std::numeric_limits<double>::infinity();
+    const auto tryAll = [&](size_t first) {
+        for (size_t i = first; i < candidates_.size() && least > enough; ++i) {
+            const Triangle t = target_.triangle(candidates_[i]);
+            double largest = 0;
+            for (int k = 0; k < 3 && largest < least; ++k) {
+                largest = std::max(largest, squaredTo(t, piece.corners[k]));
+            }
+            least = std::min(least, largest);
+        }
+    };
+    const size_t own = candidates_.size();
+    tryAll(0);
+    if (least <= enough || own == 1) return least;
+    for (size_t i = 0; i < own; ++i) target_.neighbours(candidates_[i], candidates_);
+    tryAll(own);
+    return least;
+}
+
+// Where the piece's edge leaves the triangle that is near its start: there the next triangle takes over.
+double DirectBound::crossing(const Piece& piece, int from, int to) const {
+    const Triangle t = target_.triangle(piece.near[from].triangle);
+    const glm::dvec3 corners[3] = {t.a, t.b, t.c};
+    NearOnSegment best{std::numeric_limits<double>::infinity(), 0.5};
+    for (int k = 0; k < 3; ++k) {
+        const NearOnSegment near =
+            segmentToSegment(piece.corners[from], piece.corners[to], corners[k], corners[(k + 1) % 3]);
+        if (near.at > 0.02 && near.at < 0.98 && near.squared < best.squared) best = near;
+    }
+    return best.at;
+}
+
+void DirectBound::split(const Piece& piece) {
+    int longest = 0;
+    double length2 = -1;
+    bool isCrossing = false;
+    for (int k = 0; k < 3; ++k) {
+        const glm::dvec3 edge = piece.corners[(k + 1) % 3] - piece.corners[k];
+        const bool differs = piece.near[k].triangle != piece.near[(k + 1) % 3].triangle;
+        const double squared = glm::dot(edge, edge);
+        if (differs == isCrossing ? squared <= length2 : isCrossing) continue;
+        longest = k;
+        length2 = squared;
+        isCrossing = differs;
+    }
+    const int a = longest, b = (longest + 1) % 3;
+    const double at = isCrossing ? crossing(piece, a, b) : 0.5;
+    const glm::dvec3 middle = piece.corners[a] + (piece.corners[b] - piece.corners[a]) * at;
+    const NearTriangle near = target_.near(middle, piece.near[a].triangle, floor_);
+    Piece one = piece, other = piece;
+    one.corners[b] = other.corners[a] = middle;
+    one.near[b] = other.near[a] = near;
+    push(one);
+    push(other);
+}
+
+void DirectBound::push(Piece& piece) {
+    for (const NearTriangle& n : piece.near) reached_ = std::max(reached_, n.squared);
+    piece.bound = bound(piece, std::max(enough_, reached_ * kCloseEnough));
+    pieces_.push_back(piece);
+    std::push_heap(pieces_.begin(), pieces_.end(), isTighter);
+}
+
+double DirectBound::of(const glm::dvec3 (&corners)[3], const uint32_t (&hints)[3], double enough) {
+    Piece whole;
+    for (int k = 0; k < 3; ++k) {
+        whole.corners[k] = corners[k];
+        whole.near[k] = target_.near(corners[k], hints[k], floor_);
+    }
+    pieces_.clear();
+    reached_ = 0;
+    enough_ = std::max(enough, floor_);
+    push(whole);
+    // The loosest piece first: what is left when it will do is the bound of all.
+    while (pieces_.front().bound > std::max(enough_, reached_ * kCloseEnough) && pieces_.size() < kMostPieces) {
+        std::pop_heap(pieces_.begin(), pieces_.end(), isTighter);
+        const Piece piece = pieces_.back();
+        pieces_.pop_back();
+        split(piece);
+    }
+    return pieces_.front().bound;
+}
+
+InputTarget::InputTarget(const MeasuredInput& input)
+    : input_(input), surface_([&] {
+          std::vector<Triangle> triangles;
+          for (uint32_t f = 0; f < input.mesh.faceCount(); ++f) {
+              const glm::uvec3 p = input.mesh.facePositions(f);
+              triangles.push_back({input.mesh.positions[p.x], input.mesh.positions[p.y], input.mesh.positions[p.z]});
+          }
+          return triangles;
+      }()) {}
+
+NearTriangle InputTarget::near(const glm::dvec3& p, uint32_t hint, double enough) const {
+    if (hint != kNone) {
+        const double squared = squaredTo(triangle(hint), p);
+        if (squared <= enough) return {hint, squared};
+    }
+    const SurfaceDistance::Hit hit = surface_.nearest(p, enough);
+    return {hit.triangle, hit.squared};
+}
+
+Triangle InputTarget::triangle(uint32_t t) const {
+    const glm::uvec3 p = input_.mesh.facePositions(t);
+    return {input_.mesh.positions[p.x], input_.mesh.positions[p.y], input_.mesh.positions[p.z]};
+}
+
+void InputTarget::neighbours(uint32_t t, std::vector<uint32_t>& out) const {
+    for (int k = 0; k < 3; ++k) {
+        for (const uint32_t f : input_.topology.facesOfEdge(input_.topology.faceEdges[t][k])) {
+            if (f != t) out.push_back(f);
+        }
+    }
+}
+
+NearTriangle DrawnTarget::near(const glm::dvec3& p, uint32_t hint, double enough) const {
+    const Triangle t = triangle(hint);
+    return walkNear(drawn_, p, {hint, squaredTo(t, p)}, glm::uvec3(kNone), {nullptr, enough, enough});
+}
+
+Triangle DrawnTarget::triangle(uint32_t t) const {
+    const glm::uvec3& c = drawn_.triangles[t];
+    return {glm::vec3(drawn_.points[c.x]), glm::vec3(drawn_.points[c.y]), glm::vec3(drawn_.points[c.z])};
+}
+
+void DrawnTarget::neighbours(uint32_t t, std::vector<uint32_t>& out) const {
+    for (int k = 0; k < 3; ++k) {
+        if (drawn_.beside[t][k] != kNone) out.push_back(drawn_.beside[t][k]);
+    }
+}
+
+} // namespace xgc::bake

@@ -1,0 +1,72 @@
+#pragma once
+
+#include "bake/surface_distance.h"
+#include "tracked_map.h"
+
+namespace xgc::bake {
+
+/// A surface that triangles are measured against.
+class DirectTarget {
+public:
+    virtual ~DirectTarget() = default;
+    /// A triangle near `p`, the nearest or any within `enough`, looked for around `hint` first (kNone: none known).
+    virtual NearTriangle near(const glm::dvec3& p, uint32_t hint, double enough) const = 0;
+    virtual Triangle triangle(uint32_t t) const = 0;
+    /// Triangles beside it.
+    virtual void neighbours(uint32_t t, std::vector<uint32_t>& out) const = 0;
+};
+
+/// A bound for the squared distance from every point of a triangle to the target, at most `enough` or little more than
+/// the truth. A triangle is convex, so within a piece the distance to any one of the target's triangles is largest at a
+/// corner; pieces for which no one triangle serves are split.
+class DirectBound {
+public:
+    DirectBound(const DirectTarget& target, double floor) : target_(target), floor_(floor) {}
+    double of(const glm::dvec3 (&corners)[3], const uint32_t (&hints)[3], double enough);
+
+private:
+    struct Piece {
+        glm::dvec3 corners[3];
+        NearTriangle near[3];
+        double bound; ///< squared
+    };
+    static bool isTighter(const Piece& a, const Piece& b) { return a.bound < b.bound; }
+    void push(Piece& piece);
+    double bound(const Piece& piece, double enough);
+    void split(const Piece& piece);
+    double crossing(const Piece& piece, int from, int to) const;
+
+    const DirectTarget& target_;
+    const double floor_;
+    std::vector<Piece> pieces_; ///< a heap
+    double enough_ = 0;
+    double reached_ = 0; ///< the largest distance found
+    std::vector<uint32_t> candidates_;
+};
+
+/// The input surface; its tree is made when it is first needed.
+class InputTarget : public DirectTarget {
+public:
+    explicit InputTarget(const MeasuredInput& input);
+    NearTriangle near(const glm::dvec3& p, uint32_t hint, double enough) const override;
+    Triangle triangle(uint32_t t) const override;
+    void neighbours(uint32_t t, std::vector<uint32_t>& out) const override;
+
+private:
+    const MeasuredInput& input_;
+    SurfaceDistance surface_;
+};
+
+/// The drawn surface of a level.
+class DrawnTarget : public DirectTarget {
+public:
+    explicit DrawnTarget(const DrawnLevel& drawn) : drawn_(drawn) {}
+    NearTriangle near(const glm::dvec3& p, uint32_t hint, double enough) const override;
+    Triangle triangle(uint32_t t) const override;
+    void neighbours(uint32_t t, std::vector<uint32_t>& out) const override;
+
+private:
+    const DrawnLevel& drawn_;
+};
+
+} // namespace xgc::bake

@@ -1,0 +1,138 @@
+#include "coverage.h"
+#include "direct_bound.h"
+#include "drawn_level.h"
+
+#include <xgc/bake/error.h>
+
+#include <cmath>
+#include <memory>
+
+namespace xgc::bake {
+namespace {
+
+constexpr double kFloor = 1e-7; ///< of the diagonal: distances too small to care about
+constexpr uint32_t kDirectChunk = 32;
+
+double diagonal(const Mesh& mesh) {
+    glm::dvec3 low(INFINITY), high(-INFINITY);
+    for (const glm::vec3& p : mesh.positions) {
+        low = glm::min(low, glm::dvec3(p));
+        high = glm::max(high, glm::dvec3(p));
+    }
+    return mesh.positions.empty() ? 0 : glm::length(high - low);
+}
+
+/// The least float at or above a double.
+float roundedUp(double value) {
+    const auto f = float(value);
+    return double(f) < value ? std::nextafter(f, INFINITY) : f;
+}
+
+class Measurement {
+public:
+    Measurement(const Mesh& mesh, const Topology& topology, const Hierarchy& hierarchy)
+        : input_{mesh, topology, hierarchy, std::pow(kFloor * diagonal(mesh), 2)}, walk_(mesh, hierarchy),
+          map_(input_, walk_.drawn()), paths_(input_, map_), coverage_(input_, map_, paths_),
+          errors_(hierarchy.patchCount(), 0.0), diagonal_(diagonal(mesh)) {}
+
+    /// Squared errors of the next level.
+    const std::vector<double>& advance() {
+        ++level_;
+        if (!walk_.advance()) return errors_;
+        const DrawnLevel& drawn = walk_.drawn();
+        if (drawn.count() == 0) { // nothing is drawn: no distance would do
+            errors_.assign(errors_.size(), diagonal_ * diagonal_);
+            return errors_;
+        }
+        std::vector<uint8_t> isDrawnComponent(input_.topology.componentCount, 0);
+        for (const uint32_t f : drawn.faces) isDrawnComponent[input_.topology.faceComponent[f]] = 1;
+        map_.advance(level_, drawn, isDrawnComponent, errors_);
+        paths_.advance(level_, drawn, isDrawnComponent, errors_);
+        coverage_.advance(level_, drawn, isDrawnComponent, errors_);
+        measureLoose(drawn);
+        measureBare(drawn);
+        return errors_;
+    }
+
+private:
+    /// From faces whose image is unknown to the drawn surface.
+    void measureLoose(const DrawnLevel& drawn) {
+        const DrawnTarget target(drawn);
+        const std::vector<uint32_t>& faces = coverage_.looseFaces();
+        const auto measure = [&](RunningErrors& running, uint32_t, uint32_t first, uint32_t last) {
+            DirectBound bound(target, input_.floor);
+            for (uint32_t i = first; i < last; ++i) {
+                const glm::uvec3 p = input_.mesh.facePositions(faces[i]);
+                const uint32_t patch = input_.hierarchy.facePatch[faces[i]];
+                running.raise(patch, bound.of({input_.point(p.x), input_.point(p.y), input_.point(p.z)},
+                                              {map_[p.x].triangle, map_[p.y].triangle, map_[p.z].triangle},
+                                              running.of(patch)));
+            }
+        };
+        forChunks(faces.size(), errors_, measure, kDirectChunk);
+    }
+
+    /// From drawn triangles that are not known to be covered to the input.
+    void measureBare(const DrawnLevel& drawn) {
+        std::vector<uint8_t> wasMeasured(drawn.count(), 0);
+        for (uint32_t t = 0; t < measured_.size(); ++t) {
+            const uint32_t now = drawn.newTriangle[t];
+            if (measured_[t] && now != kNone && !drawn.isFresh[now]) wasMeasured[now] = 1;
+        }
+        measured_ = std::move(wasMeasured);
+        std::vector<uint32_t> bare;
+        for (const uint32_t t : coverage_.bareTriangles()) {
+            if (!measured_[t]) bare.push_back(t);
+            measured_[t] = 1;
+        }
+        if (bare.empty()) return;
+        if (!inputTarget_) inputTarget_ = std::make_unique<InputTarget>(input_);
+        const auto measure = [&](RunningErrors& running, uint32_t, uint32_t first, uint32_t last) {
+            DirectBound bound(*inputTarget_, input_.floor);
+            for (uint32_t i = first; i < last; ++i) {
+                const glm::uvec3& c = drawn.triangles[bare[i]];
+                const uint32_t patch = drawn.patches[bare[i]];
+                uint32_t hints[3];
+                for (int k = 0; k < 3; ++k) {
+                    const uint32_t position = drawn.positions[c[k]];
+                    hints[k] = position < input_.mesh.positions.size() ? input_.topology.facesOfVertex(position).front()
+                                                                       : kNone;
+                }
+                running.raise(patch, bound.of({drawn.points[c.x], drawn.points[c.y], drawn.points[c.z]},
+                                              {hints[0], hints[1], hints[2]}, running.of(patch)));
+            }
+        };
+        forChunks(bare.size(), errors_, measure, kDirectChunk);
+    }
+
+    const MeasuredInput input_;
+    LevelWalk walk_;
+    TrackedMap map_;
+    EdgePaths paths_;
+    Coverage coverage_;
+    std::vector<double> errors_; ///< squared, per patch
+    std::vector<uint8_t> measured_;
+    std::unique_ptr<InputTarget> inputTarget_;
+    const double diagonal_;
+    uint32_t level_ = 0;
+};
+
+} // namespace
+
+PatchErrors measureErrors(const Mesh& mesh, const Topology& topology, const Hierarchy& hierarchy,
+                          const std::function<bool(double)>& progress) {
+    const uint32_t patchCount = hierarchy.patchCount(), levelCount = hierarchy.levelCount;
+    PatchErrors errors;
+    errors.values.assign(size_t(patchCount) * levelCount, 0.0f);
+    Measurement measurement(mesh, topology, hierarchy);
+    for (uint32_t level = 1; level < levelCount; ++level) {
+        const std::vector<double>& squared = measurement.advance();
+        for (uint32_t p = 0; p < patchCount; ++p) {
+            errors.values[size_t(p) * levelCount + level] = roundedUp(std::sqrt(squared[p]));
+        }
+        if (progress && !progress(double(level) / (levelCount - 1))) break;
+    }
+    return errors;
+}
+
+} // namespace xgc::bake

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+namespace xgc::bake {
+
+/// How near a segment comes to something: the squared distance, and where on the segment (0 at its start, 1 at its
+/// end).
+struct NearOnSegment {
+    double squared;
+    double at;
+};
+
+/// Segment ab against the point p.
+NearOnSegment segmentToPoint(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& p);
+
+/// Segment ab against the segment cd (Ericson, Real-Time Collision Detection, 5.1.9).
+NearOnSegment segmentToSegment(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d);
+
+} // namespace xgc::bake
