@@ -94,7 +94,7 @@ void BoundaryCollapser::evaluate(uint32_t vertex) {
     const Quadric& quadric = state_.quadrics[vertex];
     for (const StarEdge& e : edges_) {
         if (strength(e) < strongest || !state_.isBoundary[e.to]) continue;
-        const double cost = quadric.mean(state_.point(e.to)) * state_.costScale[vertex];
+        const double cost = quadric.cost(state_.point(e.to)) * state_.costScale[vertex];
         if (cost < blocked.cost || (cost == blocked.cost && e.to <= blocked.target)) continue;
         if (cost > best || (cost == best && e.to >= bestTarget)) continue;
         best = cost;

@@ -2,8 +2,11 @@
 
 #include "hierarchy/boundary_collapse.h"
 #include "hierarchy/interior_collapse.h"
+#include "hierarchy/patch_colors.h"
 #include "hierarchy/surface_state.h"
 #include "hierarchy/vanish_components.h"
+
+#include <tbb/parallel_for.h>
 
 #include <cassert>
 #include <chrono>
@@ -37,6 +40,8 @@ public:
             const HierarchyOptions& options)
         : assignment_(assignment), state_(mesh, topology, assignment) {
         initQuadrics(topology, assignment, state_);
+        for (const Quadric& q : state_.quadrics) weight_ += q.weight;
+        standing_ = double(state_.quadrics.size());
         scaleCosts(options);
         interiors_.reserve(state_.patches.size());
         for (uint32_t p = 0; p < state_.patches.size(); ++p) interiors_.emplace_back(state_, p);
@@ -45,9 +50,11 @@ public:
             topology, state_, square(levelError(options.firstError * state_.diagonal, options.maxLevels)));
     }
 
-    CollapseCounts buildLevel(uint32_t level, double limit) {
+    CollapseCounts buildLevel(uint32_t level, double squaredError) {
         CollapseCounts counts;
-        counts.collapses = vanisher_->run(level, limit);
+        counts.collapses = vanisher_->run(level, squaredError);
+        // A cost is a mean squared distance times the root of a weight.
+        const double limit = squaredError * std::sqrt(weight_ / standing_);
         for (int round = 0; round < kMostRounds; ++round) {
             boundary_->run(level, limit);
             const CollapseCounts boundary = boundary_->takeCounts();
@@ -61,6 +68,7 @@ public:
         takeTouched();
         boundary_->runWidening(level, limit);
         counts.add(boundary_->takeCounts());
+        standing_ -= counts.collapses;
         return counts;
     }
 
@@ -83,11 +91,16 @@ private:
     }
 
     CollapseCounts runInteriors(uint32_t level, double limit) {
-        CollapseCounts counts;
-        for (InteriorCollapser& i : interiors_) {
-            i.run(level, limit);
-            counts.add(i.takeCounts());
+        std::vector<uint32_t> waiting;
+        for (uint32_t p = 0; p < interiors_.size(); ++p) {
+            if (interiors_[p].hasWork(limit)) waiting.push_back(p);
         }
+        CollapseCounts counts;
+        if (waiting.empty()) return counts;
+        for (const std::vector<uint32_t>& patches : colorPatches(state_, waiting)) {
+            tbb::parallel_for(size_t(0), patches.size(), [&](size_t i) { interiors_[patches[i]].run(level, limit); });
+        }
+        for (const uint32_t p : waiting) counts.add(interiors_[p].takeCounts());
         takeTouched();
         return counts;
     }
@@ -102,6 +115,8 @@ private:
 
     const PatchAssignment& assignment_;
     SurfaceState state_;
+    double weight_ = 0;   ///< of all quadrics
+    double standing_ = 0; ///< vertices of the uniform state, about: components that vanish count as one
     std::vector<InteriorCollapser> interiors_;
     std::unique_ptr<BoundaryCollapser> boundary_;
     std::unique_ptr<ComponentVanisher> vanisher_;

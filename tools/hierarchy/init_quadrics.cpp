@@ -1,8 +1,9 @@
 #include "hierarchy/surface_state.h"
 
 // The quadric of a vertex: the planes of its faces, weighted by area, and planes that stand on edges which must keep
-// their place: open borders, seams, boundaries of parts and materials, sharp folds. Where a part was merely cut into
-// patches the edge is no feature: a whisper of a plane keeps its vertices from drifting.
+// their place: open borders, seams, boundaries of materials, sharp folds. Where patches of one material meet the edge
+// need be no feature (the surface shows those of parts that are): a whisper of a plane keeps its vertices from
+// drifting.
 
 namespace xgc::bake {
 
@@ -69,8 +70,8 @@ private:
         if (glm::dot(planeOf(state_, f).normal, planeOf(state_, g).normal) < kFoldCosine) return kFeatureWeight;
         const uint32_t p = assignment_.facePatch[f], q = assignment_.facePatch[g];
         if (p == q) return 0;
-        const Patch &a = assignment_.patches[p], &b = assignment_.patches[q];
-        return a.part != b.part || a.material != b.material ? kFeatureWeight : kCutWeight;
+        const bool sameMaterial = assignment_.patches[p].material == assignment_.patches[q].material;
+        return sameMaterial ? kCutWeight : kFeatureWeight;
     }
 
     const Topology& topology_;

@@ -8,8 +8,8 @@ namespace xgc::bake {
 InteriorCollapser::InteriorCollapser(SurfaceState& state, uint32_t patch)
     : state_(state), mesh_(state.patches[patch]), patch_(patch), stamp_(mesh_.vertexCount(), 0),
       target_(mesh_.vertexCount(), kNone), cost_(mesh_.vertexCount()), blocked_(mesh_.vertexCount()),
-      isDirty_(mesh_.vertexCount(), 0), meetsBoundary_(mesh_.vertexCount(), 0), check_(state),
-      marks_(mesh_.vertexCount(), 0) {
+      isDirty_(mesh_.vertexCount(), 0), meetsBoundary_(mesh_.vertexCount(), 0), held_(mesh_.vertexCount(), 0),
+      check_(state), marks_(mesh_.vertexCount(), 0) {
     points_.reserve(mesh_.vertexCount());
     for (uint32_t v = 0; v < mesh_.vertexCount(); ++v) {
         points_.push_back(state.point(mesh_.position[v]));
@@ -43,14 +43,15 @@ void InteriorCollapser::run(uint32_t level, double limit) {
         const uint32_t target = target_[v];
         const Outcome outcome = tryCollapse(v, target, level);
         if (outcome == Outcome::done) continue;
-        if (outcome == Outcome::heldByMixed && isBoundary(target)) held_.emplace_back(v, entry.cost);
+        if (outcome == Outcome::heldByMixed && isBoundary(target)) held_[v] = 1;
         block(v, target, entry.cost);
     }
 }
 
 void InteriorCollapser::promote(double limit) {
-    for (const auto& [v, cost] : held_) {
-        if (mesh_.head[v] == kNone || isBoundary(v) || cost > limit) continue;
+    for (uint32_t v = 0; v < mesh_.vertexCount(); ++v) {
+        if (!meetsBoundary_[v] || isBoundary(v) || mesh_.head[v] == kNone) continue;
+        if (!(held_[v] || uniformCost(v) <= limit)) continue;
         state_.makeBoundary(mesh_.position[v]);
         ++stamp_[v];
         touched_.push_back(mesh_.position[v]);
@@ -60,15 +61,28 @@ void InteriorCollapser::promote(double limit) {
             if (!isBoundary(n)) markDirty(n);
         });
     }
-    held_.clear();
+    std::fill(held_.begin(), held_.end(), 0);
+}
+
+/// Of the cheapest boundary vertex to collapse into, by where it is in the uniform state alone.
+double InteriorCollapser::uniformCost(uint32_t vertex) const {
+    const uint32_t v = mesh_.position[vertex];
+    double best = std::numeric_limits<double>::infinity();
+    mesh_.forCorners(vertex, [&](uint32_t c) {
+        const uint32_t target = mesh_.corner[PatchMesh::next(c)];
+        if (!isBoundary(target)) return;
+        const uint32_t r = state_.representative[mesh_.position[target]];
+        best = std::min(best, state_.quadrics[v].cost(state_.point(r)) * state_.costScale[v]);
+    });
+    return best;
 }
 
 /// At a boundary vertex that has itself collapsed: the larger of the costs at where it was and at where it is.
 double InteriorCollapser::costOf(uint32_t vertex, uint32_t target) const {
     const uint32_t v = mesh_.position[vertex], w = mesh_.position[target];
     const uint32_t r = state_.representative[w];
-    double cost = state_.quadrics[v].mean(points_[target]);
-    if (r != w) cost = std::max(cost, state_.quadrics[v].mean(state_.point(r)));
+    double cost = state_.quadrics[v].cost(points_[target]);
+    if (r != w) cost = std::max(cost, state_.quadrics[v].cost(state_.point(r)));
     return cost * state_.costScale[v];
 }
 

@@ -33,10 +33,11 @@ public:
         if (!isDirty_[vertex]) dirty_.push_back(vertex);
         isDirty_[vertex] = 1;
     }
+    bool hasWork(double limit) const { return !dirty_.empty() || queue_.hasBelow(limit); }
     /// Until nothing is left whose squared error is at most `limit`.
     void run(uint32_t level, double limit);
-    /// Makes boundary vertices of those that only mixed states kept from collapsing into one: they may then go
-    /// together with the patches that hold them back.
+    /// Makes boundary vertices of those that only mixed states keep from collapsing into one: they may then go together
+    /// with the patches that hold them back.
     void promote(double limit);
 
     CollapseCounts takeCounts() { return std::exchange(counts_, {}); }
@@ -49,6 +50,7 @@ private:
     void evaluate(uint32_t vertex);
     void reconsider(uint32_t vertex, uint32_t gone, uint32_t target);
     double costOf(uint32_t vertex, uint32_t target) const;
+    double uniformCost(uint32_t vertex) const;
     Outcome tryCollapse(uint32_t vertex, uint32_t target, uint32_t level);
     bool mapWedges(uint32_t vertex, uint32_t target);
     Outcome checkLinks(uint32_t vertex, uint32_t target);
@@ -77,7 +79,7 @@ private:
     std::vector<uint8_t> meetsBoundary_; ///< a boundary vertex is, or was, beside it
     std::vector<glm::dvec3> points_;     ///< about the state's origin
     std::vector<uint32_t> dirty_;
-    std::vector<std::pair<uint32_t, double>> held_; ///< vertices that only mixed states refused, and the cost
+    std::vector<uint8_t> held_; ///< only mixed states refused to let the vertex go into a boundary vertex
     std::vector<uint32_t> touched_;
     CollapseCounts counts_;
 

@@ -4,6 +4,7 @@
 #include <glm/vec3.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace xgc::bake {
 
@@ -47,8 +48,9 @@ struct Quadric {
     /// Never negative: rounding may take the sum of squares below zero.
     double sum(const glm::dvec3& p) const { return std::max(0.0, glm::dot(p, times(p)) + 2 * glm::dot(b, p) + c); }
 
-    /// Mean squared distance to the planes.
-    double mean(const glm::dvec3& p) const { return weight > 0 ? sum(p) / weight : 0; }
+    /// Half-way between the sum of squares (least RMS error) and their mean (least maximum error): the mean times the
+    /// root of the weight.
+    double cost(const glm::dvec3& p) const { return weight > 0 ? sum(p) / std::sqrt(weight) : 0; }
 };
 
 } // namespace xgc::bake
