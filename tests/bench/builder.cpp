@@ -11,7 +11,7 @@ bake::Hierarchy build(const Subject& subject, const bake::Segmentation& parts, c
 }
 
 bake::PatchErrors measureErrors(const Subject& subject, const bake::Hierarchy& hierarchy) {
-    return bake::estimateErrors(subject.mesh, hierarchy);
+    return bake::measureErrors(subject.mesh, subject.topology, hierarchy);
 }
 
 std::vector<uint32_t> uniformFaces(const bake::Mesh& mesh, const bake::Hierarchy& hierarchy) {
