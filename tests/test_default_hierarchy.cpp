@@ -141,42 +141,78 @@ std::vector<Subject> subjects() {
 
 } // namespace
 
-TEST_CASE("in every state of small meshes nothing is flipped, torn or degenerate") {
-    for (const Subject& s : subjects()) {
-        CAPTURE(s.name);
-        const Mesh mesh = test::welded(s.model);
-        const Topology topology = buildTopology(mesh);
-        for (const uint32_t patchCount : {1u, 2u, 3u, 4u}) {
-            CAPTURE(patchCount);
-            HierarchyOptions options;
-            options.firstError = patchCount == 4 ? 0.04 : 0.02; // few levels, so that all states can be tried
-            options.maxLevels = patchCount == 4 ? 4 : 7;
-            const PatchAssignment patches = randomPatches(mesh, topology, patchCount, patchCount);
-            const Hierarchy h = buildDefaultHierarchy(mesh, topology, patches, options);
-            REQUIRE(checkHierarchy(mesh, h).ok());
-            CHECK(h.levelCount > 2);
-            std::vector<uint8_t> levels(h.patchCount(), 0);
-            const uint32_t borders = faultsOf(mesh, h, levels).odd;
-            CHECK((borders == 0) == s.closed);
-            StateFaults sum;
-            for (bool more = true; more;) {
-                const StateFaults f = faultsOf(mesh, h, levels);
-                sum.flips += f.flips;
-                sum.degenerate += f.degenerate;
-                sum.odd += s.closed ? f.odd : 0;
-                more = false;
-                for (uint8_t& level : levels) { // the next state
-                    if (++level < h.levelCount) {
-                        more = true;
-                        break;
-                    }
-                    level = 0;
-                }
+namespace {
+
+/// Tries all states of a mesh cut into so many patches.
+void checkAllStates(const Subject& s, uint32_t patchCount, Placement placement) {
+    const Mesh mesh = test::welded(s.model);
+    const Topology topology = buildTopology(mesh);
+    HierarchyOptions options;
+    options.placement = placement;
+    options.firstError = patchCount == 4 ? 0.04 : 0.02; // few levels, so that all states can be tried
+    options.maxLevels = patchCount == 4 ? 4 : 7;
+    const PatchAssignment patches = randomPatches(mesh, topology, patchCount, patchCount);
+    const Hierarchy h = buildDefaultHierarchy(mesh, topology, patches, options);
+    const bake::Status status = checkHierarchy(mesh, h);
+    REQUIRE_MESSAGE(status.ok(), status.message);
+    CHECK(h.levelCount > 2);
+    if (placement == Placement::subset) CHECK(h.positions.size() == mesh.positions.size());
+    std::vector<uint8_t> levels(h.patchCount(), 0);
+    const uint32_t borders = faultsOf(mesh, h, levels).odd;
+    CHECK((borders == 0) == s.closed);
+    StateFaults sum;
+    for (bool more = true; more;) {
+        const StateFaults f = faultsOf(mesh, h, levels);
+        sum.flips += f.flips;
+        sum.degenerate += f.degenerate;
+        sum.odd += s.closed ? f.odd : 0;
+        more = false;
+        for (uint8_t& level : levels) { // the next state
+            if (++level < h.levelCount) {
+                more = true;
+                break;
             }
-            CHECK(sum.flips == 0);
-            CHECK(sum.degenerate == 0);
-            CHECK(sum.odd == 0);
+            level = 0;
         }
+    }
+    CHECK(sum.flips == 0);
+    CHECK(sum.degenerate == 0);
+    CHECK(sum.odd == 0);
+}
+
+} // namespace
+
+TEST_CASE("in every state of small meshes nothing is flipped, torn or degenerate") {
+    for (const Placement placement : {Placement::subset, Placement::optimal, Placement::midpoint}) {
+        CAPTURE(int(placement));
+        for (const Subject& s : subjects()) {
+            CAPTURE(s.name);
+            for (const uint32_t patchCount : {1u, 2u, 3u, 4u}) {
+                CAPTURE(patchCount);
+                checkAllStates(s, patchCount, placement);
+            }
+        }
+    }
+}
+
+TEST_CASE("placements that make vertices draw them, between the attributes of what they replace") {
+    const Mesh mesh = test::welded(seamedSphere(10));
+    const Topology topology = buildTopology(mesh);
+    HierarchyOptions options;
+    options.placement = Placement::optimal;
+    const Hierarchy h = buildDefaultHierarchy(mesh, topology, randomPatches(mesh, topology, 3, 1), options);
+    CHECK(h.positions.size() > mesh.positions.size() + 50);
+    for (size_t p = mesh.positions.size(); p < h.positions.size(); ++p) {
+        CHECK(h.birthLevel[p] > 0);
+        CHECK(glm::length(h.positions[p]) > 0.5f);
+        CHECK(glm::length(h.positions[p]) < 1.5f);
+    }
+    const float xMost = 5 + 1;
+    for (size_t w = mesh.wedgePosition.size(); w < h.wedgePosition.size(); ++w) {
+        const glm::vec2 uv = h.attributes.uvs[0][w];
+        const bool upper = uv.x > 3; // no made vertex lies between the charts
+        CHECK(uv.x >= (upper ? 4.0f : -1.0f));
+        CHECK(uv.x <= (upper ? xMost : 1.0f));
     }
 }
 

@@ -128,6 +128,8 @@ std::string provenance(const BakeOptions& options) {
         constexpr const char* kNorms[] = {"trace", "sum", "frobenius"};
         json["curvature"] = kNorms[int(options.thesis.curvature)];
     } else {
+        constexpr const char* kPlacements[] = {"subset", "optimal", "midpoint"};
+        json["placement"] = kPlacements[int(options.hierarchy.placement)];
         json["patchFaces"] = options.patchFaces;
         json["maxLevels"] = options.hierarchy.maxLevels;
         json["firstError"] = options.hierarchy.firstError;

@@ -11,15 +11,17 @@ constexpr size_t kWidestDomain = 16;
 
 } // namespace
 
-BoundaryCollapser::BoundaryCollapser(SurfaceState& state, std::vector<InteriorCollapser>& interiors)
-    : state_(state), interiors_(interiors), stamp_(state.isBoundary.size(), 0), target_(state.isBoundary.size(), kNone),
-      blocked_(state.isBoundary.size()), check_(state) {
+BoundaryCollapser::BoundaryCollapser(SurfaceState& state, std::vector<InteriorCollapser>& interiors,
+                                     Placement placement)
+    : state_(state), interiors_(interiors), placement_(placement), stamp_(state.isBoundary.size(), 0),
+      target_(state.isBoundary.size(), kNone), blocked_(state.isBoundary.size()), check_(state) {
     for (uint32_t p = 0; p < state.isBoundary.size(); ++p) {
         if (state.isBoundary[p]) markDirty(p);
     }
 }
 
 void BoundaryCollapser::run(uint32_t level, double limit) {
+    limit_ = limit;
     std::sort(dirty_.begin(), dirty_.end());
     dirty_.erase(std::unique(dirty_.begin(), dirty_.end()), dirty_.end());
     for (const uint32_t v : dirty_) {
@@ -91,10 +93,9 @@ void BoundaryCollapser::evaluate(uint32_t vertex) {
     const Blocked blocked = blocked_[vertex];
     double best = std::numeric_limits<double>::infinity();
     uint32_t bestTarget = kNone;
-    const Quadric& quadric = state_.quadrics[vertex];
     for (const StarEdge& e : edges_) {
         if (strength(e) < strongest || !state_.isBoundary[e.to]) continue;
-        const double cost = quadric.cost(state_.point(e.to)) * state_.costScale[vertex];
+        const double cost = costOf(vertex, e.to);
         if (cost < blocked.cost || (cost == blocked.cost && e.to <= blocked.target)) continue;
         if (cost > best || (cost == best && e.to >= bestTarget)) continue;
         best = cost;
@@ -115,13 +116,64 @@ BoundaryCollapser::Outcome BoundaryCollapser::tryCollapse(uint32_t vertex, uint3
         ++counts_.wedgeRefused;
         return Outcome::refused;
     }
-    const Outcome outcome = checkStates(vertex, target, level);
+    bool meets = makesVertex(vertex, target);
+    if (meets && !arePaired(target)) {
+        meets = false;
+        if (subsetCost(vertex, target) > limit_) {
+            ++counts_.wedgeRefused;
+            return Outcome::refused;
+        }
+    }
+    domain_ = state_.domain[vertex];
+    const Outcome outcome = meets ? tryMeeting(vertex, target, level)
+                                  : checkFaces(vertex, vertex, {vertex, target, level, domain_, true}, wedges_);
     if (outcome != Outcome::done) {
         ++counts_.flipRefused;
         return outcome;
     }
-    collapse(vertex, target, level);
+    if (meets) {
+        meet(vertex, target, level);
+    } else {
+        collapse(vertex, target, level);
+    }
     return outcome;
+}
+
+double BoundaryCollapser::costOf(uint32_t vertex, uint32_t target) const {
+    return makesVertex(vertex, target) ? meetingOf(state_, placement_, vertex, target).cost
+                                       : subsetCost(vertex, target);
+}
+
+double BoundaryCollapser::subsetCost(uint32_t vertex, uint32_t target) const {
+    return state_.quadrics[vertex].cost(state_.point(target)) * state_.costScale[vertex];
+}
+
+/// Both answer to the same patches, and neither must stay where it is.
+bool BoundaryCollapser::makesVertex(uint32_t vertex, uint32_t target) const {
+    return placement_ != Placement::subset && state_.domain[vertex] == state_.domain[target] &&
+           !std::isinf(state_.costScale[vertex]) && !std::isinf(state_.costScale[target]);
+}
+
+/// Whether the wedges of both go together in pairs, all that any state shows.
+bool BoundaryCollapser::arePaired(uint32_t target) const {
+    bool paired = wedges_.isOneToOne();
+    state_.forGroupCorners(target, [&](uint32_t patch, uint32_t c) {
+        paired = paired && wedges_.reaches(state_.uniformWedgeAt(state_.patches[patch], c));
+    });
+    return paired;
+}
+
+/// Drafts the vertex at which both meet, and tries the triangles of both. Their steps are one: of the same domain.
+BoundaryCollapser::Outcome BoundaryCollapser::tryMeeting(uint32_t vertex, uint32_t target, uint32_t level) {
+    const auto room = uint32_t(state_.rooms.size() - 1);
+    const Meeting meeting = meetingOf(state_, placement_, vertex, target);
+    const uint32_t firstWedge = state_.rooms[room].wedge;
+    const uint32_t made = state_.draft(room, meeting.point, vertex, target, wedges_.pairs());
+    vertexWedges_.setMade(wedges_, firstWedge, false);
+    targetWedges_.setMade(wedges_, firstWedge, true);
+    const Outcome outcome = checkFaces(vertex, target, {vertex, made, level, domain_, true}, vertexWedges_);
+    if (outcome != Outcome::done) return outcome;
+    return checkFaces(target, vertex, {target, made, level, domain_, true}, targetWedges_);
 }
 
 /// The map comes from the dying triangles of the uniform state; all wedges that any state shows must have a target.
@@ -181,17 +233,20 @@ bool BoundaryCollapser::isLinked(uint32_t target) {
     return true;
 }
 
-BoundaryCollapser::Outcome BoundaryCollapser::checkStates(uint32_t vertex, uint32_t target, uint32_t level) {
-    domain_ = state_.domain[vertex];
+/// Tries the triangles at a vertex's group that do not have it twice, or the other one. May widen the step's domain.
+BoundaryCollapser::Outcome BoundaryCollapser::checkFaces(uint32_t vertex, uint32_t other, const StateCheck::Move& move,
+                                                         const WedgeMap& wedges) {
     Outcome outcome = Outcome::done;
     state_.forGroupCorners(vertex, [&](uint32_t patch, uint32_t c) {
         if (outcome != Outcome::done) return;
         const PatchMesh& mesh = state_.patches[patch];
-        if (state_.uniformAt(mesh, PatchMesh::next(c)) == vertex) return;
-        if (state_.uniformAt(mesh, PatchMesh::previous(c)) == vertex) return;
+        const uint32_t n = state_.uniformAt(mesh, PatchMesh::next(c));
+        const uint32_t p = state_.uniformAt(mesh, PatchMesh::previous(c));
+        if (n == vertex || p == vertex || n == other || p == other) return;
         for (;;) {
-            const StateCheck::Move move = {vertex, target, level, domain_, true};
-            const StateCheck::Verdict verdict = check_.check(patch, c / 3, move, wedges_);
+            StateCheck::Move step = move;
+            step.domain = domain_;
+            const StateCheck::Verdict verdict = check_.check(patch, c / 3, step, wedges);
             if (verdict == StateCheck::Verdict::good) return;
             outcome = verdict == StateCheck::Verdict::badInUniform ? Outcome::refused : Outcome::heldByMixed;
             if (outcome == Outcome::refused || !widening_ || !widen()) return;
@@ -214,48 +269,78 @@ bool BoundaryCollapser::widen() {
     return true;
 }
 
-void BoundaryCollapser::collapse(uint32_t vertex, uint32_t target, uint32_t level) {
-    around_.assign(1, target);
+/// The representatives around a vertex's group; vertices inside patches are marked.
+void BoundaryCollapser::lookAround(uint32_t vertex) {
     state_.forGroupCorners(vertex, [&](uint32_t patch, uint32_t c) {
         const PatchMesh& mesh = state_.patches[patch];
         for (const uint32_t x : {PatchMesh::next(c), PatchMesh::previous(c)}) {
             const uint32_t p = state_.positionAt(mesh, x);
             if (!state_.isBoundary[p]) {
                 interiors_[patch].markDirty(mesh.corner[x]);
-            } else if (state_.representative[p] != vertex) {
+            } else {
                 around_.push_back(state_.representative[p]);
             }
         }
     });
+}
 
+/// Ends a vertex: its group goes to the parent.
+void BoundaryCollapser::retire(uint32_t vertex, uint32_t parent, const WedgeMap& wedges, uint32_t level) {
     state_.collapseLevel[vertex] = uint8_t(level);
-    state_.parent[vertex] = target;
+    state_.parent[vertex] = parent;
     state_.domain[vertex] = domain_;
-    state_.domain[target] = state_.domains.unite(state_.domain[target], domain_);
-    state_.quadrics[target].add(state_.quadrics[vertex]);
     for (const uint32_t w : state_.wedgesOf(vertex)) {
-        const uint32_t to = wedges_(w);
-        state_.wedgeParent[w] = to == kNone ? wedges_.any() : to; // no face draws it any more
+        const uint32_t to = wedges(w);
+        state_.wedgeParent[w] = to == kNone ? wedges.any() : to; // no face draws it any more
     }
     members_.clear();
     state_.forGroup(vertex, [&](uint32_t m) { members_.push_back(m); });
     for (const uint32_t m : members_) {
-        state_.representative[m] = target;
+        state_.representative[m] = parent;
         for (const uint32_t w : state_.wedgesOf(m)) {
             uint32_t& r = state_.wedgeRepresentative[w];
-            const uint32_t to = wedges_(r);
-            r = to == kNone ? wedges_.any() : to;
+            const uint32_t to = wedges(r);
+            r = to == kNone ? wedges.any() : to;
         }
     }
-    std::swap(state_.groupNext[vertex], state_.groupNext[target]);
-    auto &from = state_.starOf(vertex), &to = state_.starOf(target);
+    std::swap(state_.groupNext[vertex], state_.groupNext[parent]);
+    auto &from = state_.starOf(vertex), &to = state_.starOf(parent);
     to.insert(to.end(), from.begin(), from.end());
     from = {};
     ++stamp_[vertex];
+}
+
+void BoundaryCollapser::collapse(uint32_t vertex, uint32_t target, uint32_t level) {
+    around_.clear();
+    lookAround(vertex);
+    state_.domain[target] = state_.domains.unite(state_.domain[target], domain_);
+    state_.quadrics[target].add(state_.quadrics[vertex]);
+    retire(vertex, target, wedges_, level);
+    around_.push_back(target);
+    reevaluateAround();
+}
+
+void BoundaryCollapser::meet(uint32_t vertex, uint32_t target, uint32_t level) {
+    around_.clear();
+    lookAround(vertex);
+    lookAround(target);
+    const auto room = uint32_t(state_.rooms.size() - 1);
+    const uint32_t made = state_.rooms[room].position;
+    state_.keep(room, level, {});
+    state_.makeBoundary(made);
+    state_.domain[made] = domain_;
+    retire(vertex, made, vertexWedges_, level);
+    retire(target, made, targetWedges_, level);
+    around_.push_back(made);
+    reevaluateAround();
+}
+
+void BoundaryCollapser::reevaluateAround() {
     ++counts_.collapses;
     std::sort(around_.begin(), around_.end());
     around_.erase(std::unique(around_.begin(), around_.end()), around_.end());
     for (const uint32_t v : around_) {
+        if (state_.parent[v] != kNone) continue;
         blocked_[v] = {};
         evaluate(v);
     }

@@ -8,7 +8,7 @@ namespace xgc::bake {
 /// first. A step v -> u has the domain of v, and widens that of u by it: so domains grow along every chain.
 class BoundaryCollapser {
 public:
-    BoundaryCollapser(SurfaceState& state, std::vector<InteriorCollapser>& interiors);
+    BoundaryCollapser(SurfaceState& state, std::vector<InteriorCollapser>& interiors, Placement placement);
 
     void markDirty(uint32_t position) { dirty_.push_back(position); }
     /// Until nothing is left whose squared error is at most `limit`.
@@ -39,12 +39,23 @@ private:
     Outcome tryCollapse(uint32_t vertex, uint32_t target, uint32_t level);
     bool mapWedges(uint32_t vertex, uint32_t target);
     bool isLinked(uint32_t target);
-    Outcome checkStates(uint32_t vertex, uint32_t target, uint32_t level);
+    Outcome checkFaces(uint32_t vertex, uint32_t other, const StateCheck::Move& move, const WedgeMap& wedges);
     bool widen();
     void collapse(uint32_t vertex, uint32_t target, uint32_t level);
+    double costOf(uint32_t vertex, uint32_t target) const;
+    double subsetCost(uint32_t vertex, uint32_t target) const;
+    bool makesVertex(uint32_t vertex, uint32_t target) const;
+    bool arePaired(uint32_t target) const;
+    Outcome tryMeeting(uint32_t vertex, uint32_t target, uint32_t level);
+    void meet(uint32_t vertex, uint32_t target, uint32_t level);
+    void lookAround(uint32_t vertex);
+    void retire(uint32_t vertex, uint32_t parent, const WedgeMap& wedges, uint32_t level);
+    void reevaluateAround();
 
     SurfaceState& state_;
     std::vector<InteriorCollapser>& interiors_;
+    const Placement placement_;
+    double limit_ = 0;
     CollapseQueue queue_;
     std::vector<uint32_t> stamp_, target_;
     struct Blocked {
@@ -58,7 +69,7 @@ private:
 
     StateCheck check_;
     uint32_t domain_ = 0; ///< of the step that is tried
-    WedgeMap wedges_;
+    WedgeMap wedges_, vertexWedges_, targetWedges_;
     std::vector<StarFace> star_, otherStar_;
     std::vector<StarEdge> edges_;
     std::vector<uint32_t> members_, around_;

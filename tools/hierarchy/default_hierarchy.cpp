@@ -1,6 +1,7 @@
 #include <xgc/bake/default_hierarchy.h>
 
 #include "hierarchy/boundary_collapse.h"
+#include "hierarchy/hierarchy_of.h"
 #include "hierarchy/interior_collapse.h"
 #include "hierarchy/patch_colors.h"
 #include "hierarchy/surface_state.h"
@@ -43,9 +44,10 @@ public:
         for (const Quadric& q : state_.quadrics) weight_ += q.weight;
         standing_ = double(state_.quadrics.size());
         scaleCosts(options);
+        if (options.placement != Placement::subset) state_.makeRooms();
         interiors_.reserve(state_.patches.size());
-        for (uint32_t p = 0; p < state_.patches.size(); ++p) interiors_.emplace_back(state_, p);
-        boundary_ = std::make_unique<BoundaryCollapser>(state_, interiors_);
+        for (uint32_t p = 0; p < state_.patches.size(); ++p) interiors_.emplace_back(state_, p, options.placement);
+        boundary_ = std::make_unique<BoundaryCollapser>(state_, interiors_, options.placement);
         vanisher_ = std::make_unique<ComponentVanisher>(
             topology, state_, square(levelError(options.firstError * state_.diagonal, options.maxLevels)));
     }
@@ -142,16 +144,8 @@ void Builder::skipLockedSteps() {
 
 Hierarchy Builder::finish(uint32_t levelCount, double firstError) {
     skipLockedSteps();
-    Hierarchy h;
+    Hierarchy h = hierarchyOf(state_);
     h.levelCount = levelCount;
-    h.positions = state_.mesh.positions;
-    h.collapseLevel = std::move(state_.collapseLevel);
-    h.birthLevel.assign(h.positions.size(), 0);
-    h.domain = std::move(state_.domain);
-    h.wedgePosition = state_.mesh.wedgePosition;
-    h.wedgeParent = std::move(state_.wedgeParent);
-    h.attributes = state_.mesh.attributes;
-    h.domainPatches = state_.domains.take();
     h.patches = assignment_.patches;
     h.facePatch = assignment_.facePatch;
     h.levelThreshold.push_back(0);

@@ -5,8 +5,8 @@
 
 namespace xgc::bake {
 
-InteriorCollapser::InteriorCollapser(SurfaceState& state, uint32_t patch)
-    : state_(state), mesh_(state.patches[patch]), patch_(patch), stamp_(mesh_.vertexCount(), 0),
+InteriorCollapser::InteriorCollapser(SurfaceState& state, uint32_t patch, Placement placement)
+    : state_(state), mesh_(state.patches[patch]), patch_(patch), placement_(placement), stamp_(mesh_.vertexCount(), 0),
       target_(mesh_.vertexCount(), kNone), cost_(mesh_.vertexCount()), blocked_(mesh_.vertexCount()),
       isDirty_(mesh_.vertexCount(), 0), meetsBoundary_(mesh_.vertexCount(), 0), held_(mesh_.vertexCount(), 0),
       check_(state), marks_(mesh_.vertexCount(), 0) {
@@ -29,6 +29,7 @@ void InteriorCollapser::markBesideBoundary(uint32_t boundaryVertex) {
 }
 
 void InteriorCollapser::run(uint32_t level, double limit) {
+    limit_ = limit;
     for (const uint32_t v : dirty_) {
         isDirty_[v] = 0;
         if (isBoundary(v) || mesh_.head[v] == kNone) continue;
@@ -77,8 +78,13 @@ double InteriorCollapser::uniformCost(uint32_t vertex) const {
     return best;
 }
 
-/// At a boundary vertex that has itself collapsed: the larger of the costs at where it was and at where it is.
 double InteriorCollapser::costOf(uint32_t vertex, uint32_t target) const {
+    if (!makesVertex(vertex, target)) return subsetCost(vertex, target);
+    return meetingOf(state_, placement_, mesh_.position[vertex], mesh_.position[target]).cost;
+}
+
+/// At a boundary vertex that has itself collapsed: the larger of the costs at where it was and at where it is.
+double InteriorCollapser::subsetCost(uint32_t vertex, uint32_t target) const {
     const uint32_t v = mesh_.position[vertex], w = mesh_.position[target];
     const uint32_t r = state_.representative[w];
     double cost = state_.quadrics[v].cost(points_[target]);
@@ -108,7 +114,8 @@ void InteriorCollapser::evaluate(uint32_t vertex) {
 
 /// After a neighbour has gone into `target`, which is a neighbour now. The costs of the others are as before.
 void InteriorCollapser::reconsider(uint32_t vertex, uint32_t gone, uint32_t target) {
-    if (blocked_[vertex].cost >= 0 || target_[vertex] == gone) {
+    const bool targetMoved = placement_ != Placement::subset && target_[vertex] == target;
+    if (blocked_[vertex].cost >= 0 || target_[vertex] == gone || targetMoved) {
         blocked_[vertex] = {};
         evaluate(vertex);
         return;
@@ -135,14 +142,77 @@ InteriorCollapser::Outcome InteriorCollapser::tryCollapse(uint32_t vertex, uint3
         ++counts_.linkRefused;
         return Outcome::refused;
     }
-    Outcome outcome = checkStates(vertex, target, level);
+    bool meets = makesVertex(vertex, target);
+    if (meets && !arePaired(target)) {
+        meets = false;
+        if (subsetCost(vertex, target) > limit_) {
+            ++counts_.wedgeRefused;
+            return Outcome::refused;
+        }
+    }
+    Outcome outcome = meets ? tryMeeting(vertex, target, level) : checkStates(vertex, target, level);
     if (outcome == Outcome::done) outcome = linked;
     if (outcome != Outcome::done) {
         ++counts_.flipRefused;
         return outcome;
     }
-    collapse(vertex, target, level);
+    if (meets) {
+        meet(vertex, target, state_.rooms[patch_].position, level);
+    } else {
+        collapse(vertex, target, level);
+    }
     return outcome;
+}
+
+/// Both answer to this patch alone, and neither must stay where it is.
+bool InteriorCollapser::makesVertex(uint32_t vertex, uint32_t target) const {
+    return placement_ != Placement::subset && !isBoundary(target) &&
+           !std::isinf(state_.costScale[mesh_.position[target]]) &&
+           !std::isinf(state_.costScale[mesh_.position[vertex]]);
+}
+
+/// Whether the wedges of both go together in pairs.
+bool InteriorCollapser::arePaired(uint32_t target) const {
+    bool paired = wedges_.isOneToOne();
+    mesh_.forCorners(target, [&](uint32_t c) { paired = paired && wedges_.reaches(mesh_.wedge[c]); });
+    return paired;
+}
+
+/// Drafts the vertex at which both meet, and tries the triangles of both.
+InteriorCollapser::Outcome InteriorCollapser::tryMeeting(uint32_t vertex, uint32_t target, uint32_t level) {
+    const uint32_t v = mesh_.position[vertex], w = mesh_.position[target];
+    const Meeting meeting = meetingOf(state_, placement_, v, w);
+    const uint32_t firstWedge = state_.rooms[patch_].wedge;
+    const uint32_t made = state_.draft(patch_, meeting.point, v, w, wedges_.pairs());
+    vertexWedges_.setMade(wedges_, firstWedge, false);
+    targetWedges_.setMade(wedges_, firstWedge, true);
+    const Outcome outcome = checkFaces(vertex, target, {v, made, level, 0, false}, vertexWedges_);
+    return outcome == Outcome::done ? checkFaces(target, vertex, {w, made, level, 0, false}, targetWedges_) : outcome;
+}
+
+/// The made vertex takes the target's place in the patch mesh.
+void InteriorCollapser::meet(uint32_t vertex, uint32_t target, uint32_t made, uint32_t level) {
+    retire(mesh_.position[vertex], made, vertexWedges_, level);
+    retire(mesh_.position[target], made, targetWedges_, level);
+    state_.keep(patch_, level, {patch_, target});
+    mesh_.forCorners(target, [&](uint32_t c) { mesh_.wedge[c] = targetWedges_(mesh_.wedge[c]); });
+    mesh_.collapse(vertex, target, vertexWedges_);
+    mesh_.position[target] = made;
+    points_[target] = state_.point(made);
+    ring_.clear();
+    mesh_.forCorners(target, [&](uint32_t c) { ring_.push_back(mesh_.corner[PatchMesh::next(c)]); });
+    ring_.push_back(target);
+    meetsBoundary_[target] |= meetsBoundary_[vertex];
+    afterCollapse(vertex, target);
+}
+
+void InteriorCollapser::retire(uint32_t v, uint32_t parent, const WedgeMap& wedges, uint32_t level) {
+    state_.collapseLevel[v] = uint8_t(level);
+    state_.parent[v] = parent;
+    for (const uint32_t wedge : state_.wedgesOf(v)) {
+        const uint32_t to = wedges(wedge);
+        state_.wedgeParent[wedge] = to == kNone ? wedges.any() : to; // no face draws it any more
+    }
 }
 
 bool InteriorCollapser::mapWedges(uint32_t vertex, uint32_t target) {
@@ -244,12 +314,17 @@ bool InteriorCollapser::isLinkedInUniform(uint32_t vertex, uint32_t target) {
 }
 
 InteriorCollapser::Outcome InteriorCollapser::checkStates(uint32_t vertex, uint32_t target, uint32_t level) {
-    const StateCheck::Move move = {mesh_.position[vertex], mesh_.position[target], level, 0, false};
+    return checkFaces(vertex, target, {mesh_.position[vertex], mesh_.position[target], level, 0, false}, wedges_);
+}
+
+/// Tries the triangles of a vertex that do not have the other one.
+InteriorCollapser::Outcome InteriorCollapser::checkFaces(uint32_t vertex, uint32_t other, const StateCheck::Move& move,
+                                                         const WedgeMap& wedges) {
     Outcome outcome = Outcome::done;
     mesh_.forCorners(vertex, [&](uint32_t c) {
         if (outcome == Outcome::refused) return;
-        if (mesh_.corner[PatchMesh::next(c)] == target || mesh_.corner[PatchMesh::previous(c)] == target) return;
-        const StateCheck::Verdict verdict = check_.check(patch_, c / 3, move, wedges_);
+        if (mesh_.corner[PatchMesh::next(c)] == other || mesh_.corner[PatchMesh::previous(c)] == other) return;
+        const StateCheck::Verdict verdict = check_.check(patch_, c / 3, move, wedges);
         if (verdict == StateCheck::Verdict::badInUniform) outcome = Outcome::refused;
         if (verdict == StateCheck::Verdict::badInMixed) outcome = Outcome::heldByMixed;
     });
@@ -258,12 +333,7 @@ InteriorCollapser::Outcome InteriorCollapser::checkStates(uint32_t vertex, uint3
 
 void InteriorCollapser::collapse(uint32_t vertex, uint32_t target, uint32_t level) {
     const uint32_t v = mesh_.position[vertex], w = mesh_.position[target];
-    state_.collapseLevel[v] = uint8_t(level);
-    state_.parent[v] = w;
-    for (const uint32_t wedge : state_.wedgesOf(v)) {
-        const uint32_t to = wedges_(wedge);
-        state_.wedgeParent[wedge] = to == kNone ? wedges_.any() : to; // no face draws it any more
-    }
+    retire(v, w, wedges_, level);
     state_.quadrics[state_.representative[w]].add(state_.quadrics[v]);
     ring_.clear();
     mesh_.forCorners(vertex, [&](uint32_t c) {
@@ -277,6 +347,11 @@ void InteriorCollapser::collapse(uint32_t vertex, uint32_t target, uint32_t leve
     } else {
         meetsBoundary_[target] |= meetsBoundary_[vertex];
     }
+    afterCollapse(vertex, target);
+}
+
+/// Looks again at the vertices around.
+void InteriorCollapser::afterCollapse(uint32_t vertex, uint32_t target) {
     ++stamp_[vertex];
     ++counts_.collapses;
     for (const uint32_t n : ring_) {

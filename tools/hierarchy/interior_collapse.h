@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hierarchy/collapse_queue.h"
+#include "hierarchy/placement.h"
 #include "hierarchy/state_check.h"
 #include "hierarchy/wedge_map.h"
 
@@ -26,7 +27,7 @@ struct CollapseCounts {
 /// vertices; reads the patches around. So patches without a common representative can work at the same time.
 class InteriorCollapser {
 public:
-    InteriorCollapser(SurfaceState& state, uint32_t patch);
+    InteriorCollapser(SurfaceState& state, uint32_t patch, Placement placement);
 
     /// A boundary vertex beside this one, or this one itself, has changed.
     void markDirty(uint32_t vertex) {
@@ -50,6 +51,7 @@ private:
     void evaluate(uint32_t vertex);
     void reconsider(uint32_t vertex, uint32_t gone, uint32_t target);
     double costOf(uint32_t vertex, uint32_t target) const;
+    double subsetCost(uint32_t vertex, uint32_t target) const;
     double uniformCost(uint32_t vertex) const;
     Outcome tryCollapse(uint32_t vertex, uint32_t target, uint32_t level);
     bool mapWedges(uint32_t vertex, uint32_t target);
@@ -59,7 +61,14 @@ private:
     bool isLinkedInUniform(uint32_t vertex, uint32_t target);
     bool hasUniformEdge(uint32_t a, uint32_t b) const;
     Outcome checkStates(uint32_t vertex, uint32_t target, uint32_t level);
+    Outcome checkFaces(uint32_t vertex, uint32_t other, const StateCheck::Move& move, const WedgeMap& wedges);
     void collapse(uint32_t vertex, uint32_t target, uint32_t level);
+    bool makesVertex(uint32_t vertex, uint32_t target) const;
+    bool arePaired(uint32_t target) const;
+    Outcome tryMeeting(uint32_t vertex, uint32_t target, uint32_t level);
+    void meet(uint32_t vertex, uint32_t target, uint32_t made, uint32_t level);
+    void retire(uint32_t vertex, uint32_t parent, const WedgeMap& wedges, uint32_t level);
+    void afterCollapse(uint32_t vertex, uint32_t target);
     void block(uint32_t vertex, uint32_t target, double cost);
 
     bool isBoundary(uint32_t vertex) const { return state_.isBoundary[mesh_.position[vertex]]; }
@@ -67,6 +76,8 @@ private:
     SurfaceState& state_;
     PatchMesh& mesh_;
     const uint32_t patch_;
+    const Placement placement_;
+    double limit_ = 0;
     CollapseQueue queue_;
     std::vector<uint32_t> stamp_, target_;
     std::vector<double> cost_; ///< of target_
@@ -84,7 +95,7 @@ private:
     CollapseCounts counts_;
 
     StateCheck check_;
-    WedgeMap wedges_;
+    WedgeMap wedges_, vertexWedges_, targetWedges_;
     std::vector<uint32_t> ring_, marks_;
     uint32_t mark_ = 0;
 };

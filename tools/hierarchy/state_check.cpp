@@ -82,8 +82,8 @@ bool StateCheck::isGood(const Pick& pick) const {
     }
     std::array<glm::dvec3, 3> after, before;
     for (size_t k = 0; k < 3; ++k) {
-        after[k] = glm::dvec3(state_.mesh.positions[stops[k]->position]);
-        before[k] = corners_[k].moves ? glm::dvec3(state_.mesh.positions[before_]) : after[k];
+        after[k] = glm::dvec3(state_.positions[stops[k]->position]);
+        before[k] = corners_[k].moves ? glm::dvec3(state_.positions[before_]) : after[k];
     }
     return !isTurned(before, after);
 }
@@ -103,8 +103,8 @@ StateCheck::Verdict StateCheck::checkInside(const PatchMesh& mesh, uint32_t face
     std::array<glm::dvec3, 3> before, after;
     for (uint32_t k = 0; k < 3; ++k) {
         const uint32_t p = state_.positionAt(mesh, 3 * face + k);
-        before[k] = glm::dvec3(state_.mesh.positions[p]);
-        after[k] = p == move.from ? glm::dvec3(state_.mesh.positions[move.to]) : before[k];
+        before[k] = glm::dvec3(state_.positions[p]);
+        after[k] = p == move.from ? glm::dvec3(state_.positions[move.to]) : before[k];
     }
     return isTurned(before, after) ? Verdict::badInUniform : Verdict::good;
 }

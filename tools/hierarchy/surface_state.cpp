@@ -5,6 +5,7 @@
 #include <glm/common.hpp>
 
 #include <numeric>
+#include <utility>
 
 namespace xgc::bake {
 
@@ -36,17 +37,9 @@ bool isInconsistent(const Mesh& mesh, const Topology& topology, uint32_t edge) {
 
 SurfaceState::SurfaceState(const Mesh& m, const Topology& topology, const PatchAssignment& assignment)
     : mesh(m), domains(firstSets(m, assignment, domain)) {
-    const size_t n = mesh.positions.size();
-    isBoundary.assign(n, 0);
-    collapseLevel.assign(n, kNeverCollapses);
-    parent.assign(n, kNone);
-    representative.resize(n);
-    std::iota(representative.begin(), representative.end(), 0u);
-    groupNext = representative;
-    costScale.assign(n, 1);
-    wedgeParent.assign(mesh.wedgePosition.size(), kNone);
-    wedgeRepresentative.resize(mesh.wedgePosition.size());
-    std::iota(wedgeRepresentative.begin(), wedgeRepresentative.end(), 0u);
+    positions = mesh.positions;
+    wedgePosition = mesh.wedgePosition;
+    grow(positions.size(), wedgePosition.size());
 
     glm::dvec3 low(mesh.positions.front()), high = low;
     for (const glm::vec3& p : mesh.positions) {
@@ -68,29 +61,119 @@ void SurfaceState::buildPatches(const PatchAssignment& assignment) {
     for (uint32_t f = 0; f < faces.size(); ++f) faces[at[assignment.facePatch[f]]++] = f;
 
     std::vector<uint32_t> localOf(mesh.positions.size(), kNone);
-    firstOccurrence.assign(mesh.positions.size() + 1, 0);
     patches.reserve(assignment.patches.size());
     for (uint32_t p = 0; p < assignment.patches.size(); ++p) {
         patches.emplace_back(mesh, std::span(faces).subspan(start[p], start[p + 1] - start[p]), localOf);
-        for (const uint32_t v : patches.back().position) ++firstOccurrence[v + 1];
+        for (const uint32_t v : patches.back().position) ++occurrenceRanges[v].count;
     }
-    std::partial_sum(firstOccurrence.begin(), firstOccurrence.end(), firstOccurrence.begin());
-    occurrences.resize(firstOccurrence.back());
-    std::vector<uint32_t> slot(firstOccurrence.begin(), firstOccurrence.end() - 1);
+    uint32_t first = 0;
+    for (Range& range : occurrenceRanges) {
+        range.first = first;
+        first += std::exchange(range.count, 0);
+    }
+    occurrences.resize(first);
     for (uint32_t p = 0; p < patches.size(); ++p) {
         for (uint32_t v = 0; v < patches[p].vertexCount(); ++v) {
-            occurrences[slot[patches[p].position[v]]++] = {p, v};
+            Range& range = occurrenceRanges[patches[p].position[v]];
+            occurrences[range.first + range.count++] = {p, v};
         }
     }
 }
 
 void SurfaceState::listWedges() {
-    firstWedge.assign(mesh.positions.size() + 1, 0);
-    for (const uint32_t p : mesh.wedgePosition) ++firstWedge[p + 1];
-    std::partial_sum(firstWedge.begin(), firstWedge.end(), firstWedge.begin());
-    positionWedges.resize(mesh.wedgePosition.size());
-    std::vector<uint32_t> slot(firstWedge.begin(), firstWedge.end() - 1);
-    for (uint32_t w = 0; w < mesh.wedgePosition.size(); ++w) positionWedges[slot[mesh.wedgePosition[w]]++] = w;
+    for (const uint32_t p : wedgePosition) ++wedgeRanges[p].count;
+    uint32_t first = 0;
+    for (Range& range : wedgeRanges) {
+        range.first = first;
+        first += std::exchange(range.count, 0);
+    }
+    for (uint32_t w = 0; w < wedgePosition.size(); ++w) {
+        Range& range = wedgeRanges[wedgePosition[w]];
+        positionWedges[range.first + range.count++] = w;
+    }
+}
+
+void SurfaceState::grow(size_t positionCount, size_t wedgeCount) {
+    const auto extend = [](auto& column, size_t count, auto value) { column.resize(count, value); };
+    const auto count = [](std::vector<uint32_t>& column, size_t to) {
+        const size_t from = column.size();
+        column.resize(to);
+        std::iota(column.begin() + ptrdiff_t(from), column.end(), uint32_t(from));
+    };
+    extend(positions, positionCount, glm::vec3(0));
+    extend(birthLevel, positionCount, uint8_t(0));
+    extend(isBoundary, positionCount, uint8_t(0));
+    extend(collapseLevel, positionCount, kNeverCollapses);
+    extend(parent, positionCount, kNone);
+    extend(domain, positionCount, 0u);
+    extend(quadrics, positionCount, Quadric{});
+    extend(costScale, positionCount, 1.0);
+    extend(occurrenceRanges, positionCount, Range{});
+    extend(wedgeRanges, positionCount, Range{});
+    extend(starNumber, positionCount, kNone);
+    count(representative, positionCount);
+    count(groupNext, positionCount);
+    extend(wedgePosition, wedgeCount, kNone);
+    extend(wedgeParent, wedgeCount, kNone);
+    count(wedgeRepresentative, wedgeCount);
+    count(positionWedges, wedgeCount);
+}
+
+/// A collapse that makes a vertex takes two, so a worker never makes as many as it has; of wedges likewise.
+void SurfaceState::makeRooms() {
+    std::vector<Room> sizes(patches.size() + 1, Room{});
+    for (uint32_t p = 0; p < mesh.positions.size(); ++p) {
+        Room& room = isBoundary[p] ? sizes.back() : sizes[occurrencesOf(p).front().patch];
+        ++room.position;
+        room.wedge += wedgeRanges[p].count;
+        // One inside a patch may come to the boundary later.
+        if (!isBoundary[p]) {
+            ++sizes.back().position;
+            sizes.back().wedge += wedgeRanges[p].count;
+        }
+    }
+    auto position = uint32_t(positions.size()), wedge = uint32_t(wedgePosition.size());
+    const uint32_t baseWedges = wedge;
+    for (const Room& size : sizes) {
+        rooms.push_back({position, wedge, position, wedge});
+        position += size.position;
+        wedge += size.wedge;
+    }
+    grow(position, wedge);
+    madeWedges.resize(wedge - baseWedges);
+    firstMadeOccurrence = occurrences.size();
+    occurrences.resize(firstMadeOccurrence + position - mesh.positions.size());
+}
+
+uint32_t SurfaceState::draft(uint32_t room, const glm::dvec3& at, uint32_t v, uint32_t w,
+                             std::span<const std::pair<uint32_t, uint32_t>> wedgePairs) {
+    const uint32_t x = rooms[room].position;
+    positions[x] = glm::vec3(at + origin);
+    const glm::dvec3 along = point(w) - point(v);
+    const double squared = glm::dot(along, along);
+    const double share = squared > 0 ? glm::clamp(glm::dot(point(x) - point(v), along) / squared, 0.0, 1.0) : 0.5;
+    wedgeRanges[x] = {rooms[room].wedge, uint32_t(wedgePairs.size())};
+    uint32_t wedge = rooms[room].wedge;
+    for (const auto& [a, b] : wedgePairs) {
+        wedgePosition[wedge] = x;
+        madeWedges[wedge - mesh.wedgePosition.size()] = {a, b, float(share)};
+        ++wedge;
+    }
+    quadrics[x] = quadrics[v];
+    quadrics[x].add(quadrics[w]);
+    costScale[x] = std::max(costScale[v], costScale[w]);
+    domain[x] = domain[v];
+    return x;
+}
+
+void SurfaceState::keep(uint32_t room, uint32_t level, const Occurrence& home) {
+    const uint32_t x = rooms[room].position++;
+    rooms[room].wedge += wedgeRanges[x].count;
+    birthLevel[x] = uint8_t(level);
+    if (room + 1 == rooms.size()) return;
+    const size_t slot = firstMadeOccurrence + (x - mesh.positions.size());
+    occurrences[slot] = home;
+    occurrenceRanges[x] = {uint32_t(slot), 1};
 }
 
 /// Boundary vertices: those of several patches, on open borders, on edges that are no manifold's. (Vertices where two
@@ -102,7 +185,6 @@ void SurfaceState::classify(const Topology& topology) {
         isBoundary[topology.edges[e].x] = 1;
         isBoundary[topology.edges[e].y] = 1;
     }
-    starNumber.assign(isBoundary.size(), kNone);
     for (uint32_t p = 0; p < isBoundary.size(); ++p) {
         if (isBoundary[p]) makeBoundary(p);
     }

@@ -7,6 +7,7 @@
 #include <xgc/bake/patches.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace xgc::bake {
 
@@ -35,7 +36,9 @@ struct SurfaceState {
     const Mesh& mesh;
     std::vector<PatchMesh> patches;
 
-    // A position each.
+    // A position each: the mesh's, then room for those that the build makes.
+    std::vector<glm::vec3> positions;
+    std::vector<uint8_t> birthLevel;
     std::vector<uint8_t> isBoundary;
     std::vector<uint8_t> collapseLevel;   ///< kNeverCollapses while it stands
     std::vector<uint32_t> parent;         ///< kNone while it stands
@@ -48,19 +51,41 @@ struct SurfaceState {
     DomainSets domains;
 
     // A wedge each.
+    std::vector<uint32_t> wedgePosition;
     std::vector<uint32_t> wedgeParent;
     std::vector<uint32_t> wedgeRepresentative;
+
+    /// What a wedge that was made lies between, and the second one's share.
+    struct MadeWedge {
+        uint32_t first, second;
+        float share;
+    };
+    std::vector<MadeWedge> madeWedges; ///< from mesh.wedgePosition.size() on
+
+    /// The next numbers for vertices that one worker makes; what lies between its start and these is in use.
+    struct Room {
+        uint32_t firstPosition, firstWedge;
+        uint32_t position, wedge;
+    };
+    std::vector<Room> rooms; ///< a patch each, and the boundary's; empty where no vertices are made
+    bool makesVertices() const { return !rooms.empty(); }
+    /// For placements that make vertices: before anything collapses.
+    void makeRooms();
+    /// Writes a vertex between two others at the next numbers of a room, which are taken only by `keep`. Its wedges,
+    /// one a pair of theirs, are numbered on in order.
+    uint32_t draft(uint32_t room, const glm::dvec3& point, uint32_t v, uint32_t w,
+                   std::span<const std::pair<uint32_t, uint32_t>> wedgePairs);
+    void keep(uint32_t room, uint32_t level, const Occurrence& home);
 
     glm::dvec3 origin{0};
     double diagonal = 1;
 
-    glm::dvec3 point(uint32_t position) const { return glm::dvec3(mesh.positions[position]) - origin; }
+    glm::dvec3 point(uint32_t position) const { return glm::dvec3(positions[position]) - origin; }
     std::span<const Occurrence> occurrencesOf(uint32_t position) const {
-        return std::span(occurrences)
-            .subspan(firstOccurrence[position], firstOccurrence[position + 1] - firstOccurrence[position]);
+        return std::span(occurrences).subspan(occurrenceRanges[position].first, occurrenceRanges[position].count);
     }
     std::span<const uint32_t> wedgesOf(uint32_t position) const {
-        return std::span(positionWedges).subspan(firstWedge[position], firstWedge[position + 1] - firstWedge[position]);
+        return std::span(positionWedges).subspan(wedgeRanges[position].first, wedgeRanges[position].count);
     }
 
     /// Makes a boundary vertex of one inside a patch.
@@ -80,7 +105,7 @@ struct SurfaceState {
                 return patches[c.patch].isLive(c.corner / 3) && test(patches[c.patch], c.corner);
             });
         }
-        const Occurrence o = occurrences[firstOccurrence[r]];
+        const Occurrence o = occurrencesOf(r).front();
         const PatchMesh& patch = patches[o.patch];
         for (uint32_t c = patch.head[o.vertex]; c != kNone; c = patch.link[c]) {
             if (test(patch, c)) return true;
@@ -127,10 +152,15 @@ private:
     void buildPatches(const PatchAssignment& assignment);
     void classify(const Topology& topology);
     void listWedges();
+    void grow(size_t positionCount, size_t wedgeCount);
 
-    std::vector<uint32_t> firstOccurrence;
+    struct Range {
+        uint32_t first = 0, count = 0;
+    };
+    std::vector<Range> occurrenceRanges, wedgeRanges; ///< a position each
     std::vector<Occurrence> occurrences;
-    std::vector<uint32_t> firstWedge, positionWedges;
+    std::vector<uint32_t> positionWedges;
+    size_t firstMadeOccurrence = 0;
     std::vector<uint32_t> starNumber; ///< a position: in stars, kNone inside patches
     std::vector<std::vector<PatchCorner>> stars;
 };

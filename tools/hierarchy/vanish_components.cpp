@@ -116,10 +116,12 @@ uint32_t ComponentVanisher::run(uint32_t level, double limit) {
 void ComponentVanisher::vanish(uint32_t component, uint32_t level) {
     std::vector<uint32_t> alive;
     uint32_t target = kNone;
-    for (const uint32_t p : positionsOf(component)) {
-        if (state_.parent[p] == kNone) alive.push_back(p);
+    for (uint32_t p : positionsOf(component)) {
+        while (state_.parent[p] != kNone) p = state_.parent[p];
+        alive.push_back(p);
     }
-    if (alive.empty()) return;
+    std::sort(alive.begin(), alive.end());
+    alive.erase(std::unique(alive.begin(), alive.end()), alive.end());
     target = alive.front();
     uint32_t domain = state_.domain[target];
     for (const uint32_t v : alive) domain = state_.domains.unite(domain, state_.domain[v]);

@@ -2,6 +2,7 @@
 
 #include <xgc/bake/model.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,24 @@ public:
         return kNone;
     }
     uint32_t any() const { return pairs_.front().second; }
+    const std::vector<std::pair<uint32_t, uint32_t>>& pairs() const { return pairs_; }
+    /// Whether no two wedges go into one.
+    bool isOneToOne() const {
+        for (size_t i = 0; i < pairs_.size(); ++i) {
+            for (size_t k = 0; k < i; ++k) {
+                if (pairs_[i].second == pairs_[k].second) return false;
+            }
+        }
+        return true;
+    }
+    bool reaches(uint32_t to) const {
+        return std::any_of(pairs_.begin(), pairs_.end(), [to](const auto& pair) { return pair.second == to; });
+    }
+    /// Where the made wedges of the pairs, numbered from `first`, take the place of both.
+    void setMade(const WedgeMap& paired, uint32_t first, bool ofTargets) {
+        pairs_.clear();
+        for (const auto& [from, to] : paired.pairs_) pairs_.emplace_back(ofTargets ? to : from, first++);
+    }
 
 private:
     std::vector<std::pair<uint32_t, uint32_t>> pairs_;

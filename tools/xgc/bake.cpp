@@ -19,7 +19,8 @@ std::atomic<bool> interrupted{false};
 
 struct BakeArguments {
     std::string input, output, report;
-    std::string preset = "default", parts = "thesis", curvature = "trace", normals = "keep", importanceColor;
+    std::string preset = "default", placement = "subset", parts = "thesis", curvature = "trace", normals = "keep",
+                importanceColor;
     std::vector<std::string> lockedParts, importances;
     uint32_t jobs = 0;
     bool quiet = false;
@@ -74,6 +75,9 @@ bake::Status parse(const BakeArguments& arguments, bake::BakeOptions& options) {
     if (bake::Status s = parseParts(arguments, options); !s.ok()) return s;
     if (bake::Status s = parseImportance(arguments, options); !s.ok()) return s;
     options.preset = arguments.preset == "thesis" ? bake::Preset::thesis : bake::Preset::standard;
+    options.hierarchy.placement = arguments.placement == "optimal"    ? bake::Placement::optimal
+                                  : arguments.placement == "midpoint" ? bake::Placement::midpoint
+                                                                      : bake::Placement::subset;
     options.thesis.curvature = arguments.curvature == "sum"         ? bake::CurvatureNorm::sum
                                : arguments.curvature == "frobenius" ? bake::CurvatureNorm::frobenius
                                                                     : bake::CurvatureNorm::trace;
@@ -145,6 +149,10 @@ void addBake(CLI::App& app, Run& run) {
         ->capture_default_str();
     bake->add_option("--curvature", arguments->curvature, "Of --preset thesis: norm that locks creases and apices")
         ->check(CLI::IsMember({"trace", "sum", "frobenius"}))
+        ->capture_default_str();
+    bake->add_option("--placement", arguments->placement,
+                     "Of collapsed vertices: subset of the input's, or optimal or midpoint ones, for more memory")
+        ->check(CLI::IsMember({"subset", "optimal", "midpoint"}))
         ->capture_default_str();
     bake->add_option("--patch-faces", arguments->options.patchFaces, "Faces a patch, about; 0: a patch a part")
         ->capture_default_str();
