@@ -1,11 +1,12 @@
 #include "coverage.h"
 
 #include "bake/surface_distance.h"
+#include "segments.h"
 
 namespace xgc::bake {
 namespace {
 
-constexpr double kReach = 1.1 * 1.1; ///< faces farther than this from a vertex that they would cover count as loose
+constexpr double kReach = 1.1 * 1.1; ///< faces farther than this from a vertex that they cover are strained
 
 /// Goes round `vertex` from triangle to triangle of a loop, from `from` to `to`; false if that does not arrive.
 template <typename Loop, typename Cross>
@@ -53,6 +54,7 @@ bool Coverage::isTrivial(uint32_t face) const {
 
 bool Coverage::collect(uint32_t face, const DrawnLevel& drawn, Loop& loop) const {
     loop.count = 0;
+    loop.isStrained = false;
     const glm::uvec3 corners = input_.mesh.facePositions(face);
     bool isOnEdge[3] = {};
     for (int k = 0; k < 3; ++k) {
@@ -60,6 +62,7 @@ bool Coverage::collect(uint32_t face, const DrawnLevel& drawn, Loop& loop) const
         std::array<uint32_t, 2> two;
         const EdgePaths::Path path = paths_.of(e, drawn, two);
         if (path.kind == EdgePaths::Kind::none) return false;
+        loop.isStrained |= path.isStrained;
         isOnEdge[k] = path.kind == EdgePaths::Kind::drawn;
         if (isOnEdge[k]) continue;
         for (const uint32_t t : path.triangles) {
@@ -127,36 +130,70 @@ Coverage::Disc Coverage::discOf(const DrawnLevel& drawn, const Loop& loop, uint3
     return inner == 1 ? Disc::aroundVertex : Disc::none;
 }
 
-void Coverage::checkFace(uint32_t face, const DrawnLevel& drawn, RunningErrors& running, std::vector<uint32_t>& loose,
-                         std::vector<uint32_t>& centres) const {
+void Coverage::checkFace(uint32_t face, const DrawnLevel& drawn, RunningErrors& running, Found& found) const {
     Loop loop;
     uint32_t centre = kNone;
     Disc disc = Disc::none;
     if (collect(face, drawn, loop) && isWhole(face, drawn, loop)) disc = discOf(drawn, loop, centre);
-    if (disc == Disc::none) return loose.push_back(face);
-    if (disc == Disc::plain) return;
-    const glm::uvec3 p = input_.mesh.facePositions(face);
-    const double squared =
-        squaredDistance(drawn.points[centre], input_.point(p.x), input_.point(p.y), input_.point(p.z));
-    if (squared > std::max(input_.floor, kReach * running.of(input_.hierarchy.facePatch[face])))
-        return loose.push_back(face);
-    running.raise(input_.hierarchy.facePatch[face], squared);
-    for (const uint32_t t : drawn.star(centre)) running.raise(drawn.patches[t], squared);
-    centres.push_back(centre);
+    if (disc == Disc::none) return found.loose.push_back(face);
+    if (disc == Disc::aroundVertex) {
+        found.centres.push_back(centre);
+        const glm::uvec3 p = input_.mesh.facePositions(face);
+        const double squared =
+            squaredDistance(drawn.points[centre], input_.point(p.x), input_.point(p.y), input_.point(p.z));
+        if (squared > std::max(input_.floor, kReach * running.of(input_.hierarchy.facePatch[face]))) {
+            loop.isStrained = true;
+        } else {
+            running.raise(input_.hierarchy.facePatch[face], squared);
+            for (const uint32_t t : drawn.star(centre)) running.raise(drawn.patches[t], squared);
+        }
+    }
+    if (loop.isStrained) found.strained.push_back(face);
+}
+
+std::vector<Coverage::Region> Coverage::imageOf(uint32_t face, const DrawnLevel& drawn) const {
+    Loop loop;
+    uint32_t centre = kNone;
+    collect(face, drawn, loop);
+    const Disc disc = discOf(drawn, loop, centre);
+    std::vector<Region> regions;
+    for (uint32_t i = 0; i < loop.count; ++i) regions.push_back({loop.triangles[i], {}});
+    const auto add = [&](uint32_t triangle, const glm::dvec3& point) {
+        for (Region& r : regions) {
+            if (r.triangle == triangle) r.points.push_back(point);
+        }
+    };
+    const auto addVertex = [&](uint32_t vertex) {
+        for (const uint32_t t : drawn.star(vertex)) add(t, drawn.points[vertex]);
+    };
+    if (disc == Disc::aroundVertex) addVertex(centre);
+    const glm::uvec3 corners = input_.mesh.facePositions(face);
+    for (int k = 0; k < 3; ++k) {
+        const TrackedMap::Place& place = map_[corners[k]];
+        const glm::uvec3& t = drawn.triangles[place.triangle];
+        if (place.vertex != kNone)
+            addVertex(place.vertex);
+        else
+            add(place.triangle,
+                nearestOnTriangle(input_.point(corners[k]), drawn.points[t.x], drawn.points[t.y], drawn.points[t.z]));
+        paths_.forCrossings(input_.topology.faceEdges[face][k], drawn,
+                            [&](uint32_t a, uint32_t b, const glm::dvec3& point) {
+                                add(a, point);
+                                add(b, point);
+                            });
+    }
+    return regions;
 }
 
 void Coverage::advance(uint32_t level, const DrawnLevel& drawn, const std::vector<uint8_t>& isDrawnComponent,
                        std::vector<double>& errors) {
     level_ = level;
-    struct Found {
-        std::vector<uint32_t> loose, centres;
-    };
     std::vector<Found> found(chunkCount(isLoose_.size()));
     forChunks(isLoose_.size(), errors, [&](RunningErrors& running, uint32_t chunk, uint32_t first, uint32_t last) {
         for (uint32_t f = first; f < last; ++f) {
             if (paths_.faceLeaves(f) > level || isTrivial(f)) continue;
             if (isDrawnComponent[input_.topology.faceComponent[f]])
-                checkFace(f, drawn, running, found[chunk].loose, found[chunk].centres);
+                checkFace(f, drawn, running, found[chunk]);
             else
                 found[chunk].loose.push_back(f);
         }
@@ -164,8 +201,10 @@ void Coverage::advance(uint32_t level, const DrawnLevel& drawn, const std::vecto
     std::fill(isLoose_.begin(), isLoose_.end(), uint8_t(0));
     isCentre_.assign(drawn.points.size(), 0);
     loose_.clear();
+    strained_.clear();
     for (const Found& f : found) {
         loose_.insert(loose_.end(), f.loose.begin(), f.loose.end());
+        strained_.insert(strained_.end(), f.strained.begin(), f.strained.end());
         for (const uint32_t c : f.centres) isCentre_[c] = 1;
     }
     for (const uint32_t f : loose_) isLoose_[f] = 1;
@@ -188,7 +227,7 @@ void Coverage::cutDrawnEdge(uint32_t a, uint32_t b, const DrawnLevel& drawn) {
 void Coverage::cutAlong(uint32_t edge, const DrawnLevel& drawn) {
     const glm::uvec2 e = input_.topology.edges[edge];
     std::array<uint32_t, 2> two;
-    EdgePaths::Path path{EdgePaths::Kind::drawn, {}};
+    EdgePaths::Path path{EdgePaths::Kind::drawn, false, {}};
     if (paths_.edgeLeaves(edge) <= level_) path = paths_.of(edge, drawn, two);
     if (path.kind == EdgePaths::Kind::drawn) return cutDrawnEdge(map_[e.x].vertex, map_[e.y].vertex, drawn);
     for (const uint32_t t : path.triangles) isCut_[t] = 1;

@@ -21,6 +21,14 @@ public:
 
     /// Faces whose image is not known to be near them, rising.
     const std::vector<uint32_t>& looseFaces() const { return loose_; }
+    /// Faces whose image is a disc that may lie far from them, rising.
+    const std::vector<uint32_t>& strainedFaces() const { return strained_; }
+    /// The triangles over which such a face's image extends, and in each points whose convex hull holds it.
+    struct Region {
+        uint32_t triangle;
+        std::vector<glm::dvec3> points;
+    };
+    std::vector<Region> imageOf(uint32_t face, const DrawnLevel& drawn) const;
     /// Drawn triangles that are not known to be covered, rising.
     const std::vector<uint32_t>& bareTriangles() const { return bare_; }
 
@@ -31,6 +39,7 @@ private:
         uint32_t triangles[kMostTriangles];
         uint32_t count = 0;
         uint32_t starts[3], ends[3]; ///< of the edge from corner k to k + 1
+        bool isStrained = false;
         bool has(uint32_t t) const { return std::find(triangles, triangles + count, t) != triangles + count; }
         bool add(uint32_t t) {
             if (has(t)) return true;
@@ -45,8 +54,10 @@ private:
     bool isWhole(uint32_t face, const DrawnLevel& drawn, const Loop& loop) const;
     Disc discOf(const DrawnLevel& drawn, const Loop& loop, uint32_t& centre) const;
     bool isTrivial(uint32_t face) const;
-    void checkFace(uint32_t face, const DrawnLevel& drawn, RunningErrors& running, std::vector<uint32_t>& loose,
-                   std::vector<uint32_t>& centres) const;
+    struct Found {
+        std::vector<uint32_t> loose, strained, centres;
+    };
+    void checkFace(uint32_t face, const DrawnLevel& drawn, RunningErrors& running, Found& found) const;
     void cut(const DrawnLevel& drawn);
     void cutDrawnEdge(uint32_t a, uint32_t b, const DrawnLevel& drawn);
     void cutAlong(uint32_t edge, const DrawnLevel& drawn);
@@ -59,7 +70,7 @@ private:
     std::vector<uint32_t> oddEdges_;
     uint32_t level_ = 0;
     std::vector<uint8_t> isLoose_; ///< per face: loose, or of a component that is not drawn
-    std::vector<uint32_t> loose_, bare_;
+    std::vector<uint32_t> loose_, strained_, bare_;
     std::vector<uint8_t> isCut_;    ///< per drawn triangle
     std::vector<uint8_t> isCentre_; ///< per drawn vertex: some C(face) holds it and its star
 };

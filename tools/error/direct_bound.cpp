@@ -70,7 +70,7 @@ void DirectBound::split(const Piece& piece) {
     const int a = longest, b = (longest + 1) % 3;
     const double at = isCrossing ? crossing(piece, a, b) : 0.5;
     const glm::dvec3 middle = piece.corners[a] + (piece.corners[b] - piece.corners[a]) * at;
-    const NearTriangle near = target_.near(middle, piece.near[a].triangle, floor_);
+    const NearTriangle near = target_.near(middle, piece.near[a].triangle, enough_);
     Piece one = piece, other = piece;
     one.corners[b] = other.corners[a] = middle;
     one.near[b] = other.near[a] = near;
@@ -87,13 +87,13 @@ void DirectBound::push(Piece& piece) {
 
 double DirectBound::of(const glm::dvec3 (&corners)[3], const uint32_t (&hints)[3], double enough) {
     Piece whole;
+    enough_ = std::max(enough, floor_);
     for (int k = 0; k < 3; ++k) {
         whole.corners[k] = corners[k];
-        whole.near[k] = target_.near(corners[k], hints[k], floor_);
+        whole.near[k] = target_.near(corners[k], hints[k], enough_);
     }
     pieces_.clear();
     reached_ = 0;
-    enough_ = std::max(enough, floor_);
     push(whole);
     // The loosest piece first: what is left when it will do is the bound of all.
     while (pieces_.front().bound > std::max(enough_, reached_ * kCloseEnough) && pieces_.size() < kMostPieces) {
@@ -105,23 +105,47 @@ double DirectBound::of(const glm::dvec3 (&corners)[3], const uint32_t (&hints)[3
     return pieces_.front().bound;
 }
 
-InputTarget::InputTarget(const MeasuredInput& input)
-    : input_(input), surface_([&] {
-          std::vector<Triangle> triangles;
-          for (uint32_t f = 0; f < input.mesh.faceCount(); ++f) {
-              const glm::uvec3 p = input.mesh.facePositions(f);
-              triangles.push_back({input.mesh.positions[p.x], input.mesh.positions[p.y], input.mesh.positions[p.z]});
-          }
-          return triangles;
-      }()) {}
+// Triangles with the first point as a corner hold the hull.
+double DirectBound::ofHull(const std::vector<glm::dvec3>& points, uint32_t hint, double enough) {
+    const Triangle t = target_.triangle(hint);
+    double largest = 0;
+    for (const glm::dvec3& p : points) largest = std::max(largest, squaredTo(t, p));
+    if (largest <= std::max(enough, floor_)) return largest;
+    const uint32_t hints[3] = {hint, hint, hint};
+    largest = 0;
+    if (points.size() < 3) return of({points.front(), points.back(), points.back()}, hints, enough);
+    for (size_t i = 1; i < points.size(); ++i) {
+        for (size_t j = i + 1; j < points.size(); ++j) {
+            largest = std::max(largest, of({points[0], points[i], points[j]}, hints, std::max(largest, enough)));
+        }
+    }
+    return largest;
+}
+
+void InputTarget::prepare() {
+    if (surface_) return;
+    std::vector<Triangle> triangles;
+    for (uint32_t f = 0; f < input_.mesh.faceCount(); ++f) triangles.push_back(triangle(f));
+    surface_ = std::make_unique<SurfaceDistance>(std::move(triangles));
+}
 
 NearTriangle InputTarget::near(const glm::dvec3& p, uint32_t hint, double enough) const {
-    if (hint != kNone) {
-        const double squared = squaredTo(triangle(hint), p);
-        if (squared <= enough) return {hint, squared};
+    NearTriangle best{hint, std::numeric_limits<double>::infinity()};
+    if (hint != kNone) best.squared = squaredTo(triangle(hint), p);
+    uint32_t from = kNone;
+    while (best.triangle != from && best.squared > enough) {
+        from = best.triangle;
+        const glm::uvec3 corners = input_.mesh.facePositions(from);
+        for (int k = 0; k < 3 && best.squared > enough; ++k) {
+            for (const uint32_t f : input_.topology.facesOfVertex(corners[k])) {
+                const double squared = squaredTo(triangle(f), p);
+                if (squared < best.squared) best = {f, squared};
+            }
+        }
     }
-    const SurfaceDistance::Hit hit = surface_.nearest(p, enough);
-    return {hit.triangle, hit.squared};
+    if (best.squared <= enough || !surface_) return best;
+    const SurfaceDistance::Hit hit = surface_->nearest(p, enough);
+    return hit.squared < best.squared ? NearTriangle{hit.triangle, hit.squared} : best;
 }
 
 Triangle InputTarget::triangle(uint32_t t) const {

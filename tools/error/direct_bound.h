@@ -3,6 +3,8 @@
 #include "bake/surface_distance.h"
 #include "tracked_map.h"
 
+#include <memory>
+
 namespace xgc::bake {
 
 /// A surface that triangles are measured against.
@@ -23,6 +25,8 @@ class DirectBound {
 public:
     DirectBound(const DirectTarget& target, double floor) : target_(target), floor_(floor) {}
     double of(const glm::dvec3 (&corners)[3], const uint32_t (&hints)[3], double enough);
+    /// The same for the convex hull of points of a plane, all of them near the target's triangle `hint`.
+    double ofHull(const std::vector<glm::dvec3>& points, uint32_t hint, double enough);
 
 private:
     struct Piece {
@@ -44,17 +48,18 @@ private:
     std::vector<uint32_t> candidates_;
 };
 
-/// The input surface; its tree is made when it is first needed.
+/// The input surface. Where it is prepared, what is not found around the hint is looked for in a tree.
 class InputTarget : public DirectTarget {
 public:
-    explicit InputTarget(const MeasuredInput& input);
+    explicit InputTarget(const MeasuredInput& input) : input_(input) {}
+    void prepare();
     NearTriangle near(const glm::dvec3& p, uint32_t hint, double enough) const override;
     Triangle triangle(uint32_t t) const override;
     void neighbours(uint32_t t, std::vector<uint32_t>& out) const override;
 
 private:
     const MeasuredInput& input_;
-    SurfaceDistance surface_;
+    std::unique_ptr<SurfaceDistance> surface_;
 };
 
 /// The drawn surface of a level.

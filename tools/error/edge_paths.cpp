@@ -7,7 +7,7 @@
 namespace xgc::bake {
 namespace {
 
-constexpr uint32_t kMostNodes = 400;
+constexpr uint32_t kMostNodes = 200;
 constexpr double kReach =
     1.1 * 1.1; ///< edges farther from the surface than this times the vertices are left to a direct measurement
 
@@ -108,7 +108,6 @@ bool PathSearch::searchWide(const DrawnLevel& drawn, const Segment& s, const All
             if (next == kNone || stamps_[next] == stamp_) continue;
             const glm::uvec3& c = drawn.triangles[t];
             double cost = segmentToSegment(s.a, s.b, drawn.points[c[k]], drawn.points[c[(k + 1) % 3]]).squared;
-            if (cost > s.most) continue;
             if (allowance.covers(drawn.patches[t], cost) && allowance.covers(drawn.patches[next], cost)) cost = 0;
             open(next, best.node, std::max(cost, best.cost));
         }
@@ -152,10 +151,12 @@ bool EdgePaths::isKept(uint32_t edge, const DrawnLevel& drawn) const {
     return from.vertex == kNone || to.vertex == kNone;
 }
 
-void EdgePaths::raise(uint32_t edge, const DrawnLevel& drawn, std::span<const uint32_t> path,
-                      RunningErrors& running) const {
+bool EdgePaths::raise(uint32_t edge, const DrawnLevel& drawn, std::span<const uint32_t> path,
+                      const Chunk& chunk) const {
     const glm::uvec2 e = input_.topology.edges[edge];
     const glm::dvec3 a = input_.point(e.x), b = input_.point(e.y);
+    std::vector<double>& crossings = chunk.search.crossings;
+    crossings.clear();
     double passed = 0, worst = 0;
     for (size_t i = 0; i + 1 < path.size(); ++i) {
         const int k = sharedEdge(drawn, path[i], path[i + 1]);
@@ -166,12 +167,17 @@ void EdgePaths::raise(uint32_t edge, const DrawnLevel& drawn, std::span<const ui
         if (near.at < passed) near = {segmentToPoint(c, d, a + (b - a) * passed).squared, passed};
         passed = near.at;
         worst = std::max(worst, near.squared);
-        running.raise(drawn.patches[path[i]], near.squared);
-        running.raise(drawn.patches[path[i + 1]], near.squared);
+        crossings.push_back(near.squared);
+    }
+    if (worst > kReach * largestError(edge, chunk.errors)) return false;
+    for (size_t i = 0; i < crossings.size(); ++i) {
+        chunk.running.raise(drawn.patches[path[i]], crossings[i]);
+        chunk.running.raise(drawn.patches[path[i + 1]], crossings[i]);
     }
     for (const uint32_t f : input_.topology.facesOfEdge(edge)) {
-        running.raise(input_.hierarchy.facePatch[f], worst);
+        chunk.running.raise(input_.hierarchy.facePatch[f], worst);
     }
+    return true;
 }
 
 double EdgePaths::largestError(uint32_t edge, const std::vector<double>& errors) const {
@@ -193,8 +199,7 @@ uint32_t EdgePaths::find(uint32_t edge, const DrawnLevel& drawn, Chunk& chunk) c
             if (drawn.hasCorner(t, to.vertex)) return kInside;
         }
     }
-    const PathSearch::Segment segment{input_.point(e.x), input_.point(e.y), from, to,
-                                      kReach * largestError(edge, chunk.errors)};
+    const PathSearch::Segment segment{input_.point(e.x), input_.point(e.y), from, to};
     const Allowance allowance{&chunk.running, leastError(edge, chunk.running), input_.floor};
     if (from.vertex == kNone && to.vertex == kNone && sharesEdge(drawn, from.triangle, to.triangle)) {
         const int k = sharedEdge(drawn, from.triangle, to.triangle);
@@ -204,24 +209,26 @@ uint32_t EdgePaths::find(uint32_t edge, const DrawnLevel& drawn, Chunk& chunk) c
         if (allowance.covers(drawn.patches[from.triangle], squared) &&
             allowance.covers(drawn.patches[to.triangle], squared)) {
             const uint32_t pair[2] = {from.triangle, to.triangle};
-            raise(edge, drawn, pair, chunk.running);
+            raise(edge, drawn, pair, chunk);
             return kPair;
         }
     }
     if (!chunk.search.find(drawn, segment, allowance)) return kNoPath;
     const std::vector<uint32_t>& path = chunk.search.path;
-    raise(edge, drawn, path, chunk.running);
-    if (path.size() == 2 && path[0] == from.triangle && path[1] == to.triangle && sharesEdge(drawn, path[0], path[1])) {
+    const bool isNear = raise(edge, drawn, path, chunk);
+    if (isNear && path.size() == 2 && path[0] == from.triangle && path[1] == to.triangle &&
+        sharesEdge(drawn, path[0], path[1])) {
         return kPair;
     }
     const auto code = uint32_t(kFirstStored + chunk.stored.size());
     chunk.stored.push_back(uint32_t(path.size()));
     chunk.stored.insert(chunk.stored.end(), path.begin(), path.end());
-    return code;
+    return isNear ? code : code | kStrained;
 }
 
 void EdgePaths::advance(uint32_t level, const DrawnLevel& drawn, const std::vector<uint8_t>& isDrawnComponent,
                         std::vector<double>& errors) {
+    level_ = level;
     tbb::enumerable_thread_specific<PathSearch> searches;
     forChunks(codes_.size(), errors, [&](RunningErrors& running, uint32_t chunk, uint32_t first, uint32_t last) {
         stored_[chunk].clear();
@@ -234,24 +241,32 @@ void EdgePaths::advance(uint32_t level, const DrawnLevel& drawn, const std::vect
     });
 }
 
+glm::dvec3 EdgePaths::crossing(uint32_t edge, const DrawnLevel& drawn, uint32_t triangle, uint32_t next) const {
+    const glm::uvec2 e = input_.topology.edges[edge];
+    const int k = sharedEdge(drawn, triangle, next);
+    const glm::dvec3& c = drawn.points[drawn.triangles[triangle][k]];
+    const glm::dvec3& d = drawn.points[drawn.triangles[triangle][(k + 1) % 3]];
+    return c + (d - c) * segmentToSegment(c, d, input_.point(e.x), input_.point(e.y)).at;
+}
+
 EdgePaths::Path EdgePaths::of(uint32_t edge, const DrawnLevel& drawn, std::array<uint32_t, 2>& two) const {
     const uint32_t code = codes_[edge];
-    if (code == kNoPath) return {Kind::none, {}};
+    if (code == kNoPath) return {Kind::none, false, {}};
     const glm::uvec2 e = input_.topology.edges[edge];
     const Place &from = map_[e.x], &to = map_[e.y];
     if (code == kPair) {
         two = {from.triangle, to.triangle};
-        return {Kind::crossing, two};
+        return {Kind::crossing, false, two};
     }
     if (code >= kFirstStored) {
-        const uint32_t* stored = stored_[edge / kChunk].data() + (code - kFirstStored);
-        return {Kind::crossing, {stored + 1, stored[0]}};
+        const uint32_t* stored = stored_[edge / kChunk].data() + ((code & ~kStrained) - kFirstStored);
+        return {Kind::crossing, (code & kStrained) != 0, {stored + 1, stored[0]}};
     }
-    if (from.vertex != kNone && to.vertex != kNone) return {Kind::drawn, {}};
+    if (from.vertex != kNone && to.vertex != kNone) return {Kind::drawn, false, {}};
     const bool isInTo =
         from.triangle == to.triangle || (from.vertex != kNone && drawn.hasCorner(to.triangle, from.vertex));
     two[0] = isInTo ? to.triangle : from.triangle;
-    return {Kind::inside, {two.data(), 1}};
+    return {Kind::inside, false, {two.data(), 1}};
 }
 
 } // namespace xgc::bake

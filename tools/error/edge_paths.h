@@ -12,12 +12,12 @@ public:
     struct Segment {
         glm::dvec3 a, b;
         TrackedMap::Place from, to;
-        double most; ///< squared distance beyond which no edge is crossed
     };
     /// The triangles that the segment passes on its way, of which each is beside the one before: such that the largest
     /// distance between the segment and a crossed edge is small. False where none is found.
     bool find(const DrawnLevel& drawn, const Segment& segment, const Allowance& allowance);
     std::vector<uint32_t> path;
+    std::vector<double> crossings; ///< squared distances
 
 private:
     struct Node {
@@ -45,7 +45,8 @@ public:
     EdgePaths(const MeasuredInput& input, const TrackedMap& map);
 
     /// Finds the ways of the edges that no face keeps as they are, and raises the errors by the distances between each
-    /// edge and the drawn edges that it crosses: of the patches around it and on both sides of those.
+    /// edge and the drawn edges that it crosses: of the patches around it and on both sides of those. Those of ways
+    /// that lead much farther away than the vertices are left out: such a way proves little.
     void advance(uint32_t level, const DrawnLevel& drawn, const std::vector<uint8_t>& isDrawnComponent,
                  std::vector<double>& errors);
 
@@ -57,32 +58,48 @@ public:
     };
     struct Path {
         Kind kind;
+        bool isStrained;                     ///< it leads far from the edge: the distances are not in the errors
         std::span<const uint32_t> triangles; ///< from the edge's first position to its second; empty for `drawn`
     };
     /// `two` holds the triangles of short ways.
     Path of(uint32_t edge, const DrawnLevel& drawn, std::array<uint32_t, 2>& two) const;
+
+    /// Calls `visit(triangle, next, point)` where the way of an edge passes from triangle to triangle.
+    template <typename Visit>
+    void forCrossings(uint32_t edge, const DrawnLevel& drawn, const Visit& visit) const {
+        if (edgeLeaves_[edge] > level_) return;
+        std::array<uint32_t, 2> two;
+        const Path path = of(edge, drawn, two);
+        for (size_t i = 0; i + 1 < path.triangles.size(); ++i) {
+            visit(path.triangles[i], path.triangles[i + 1],
+                  crossing(edge, drawn, path.triangles[i], path.triangles[i + 1]));
+        }
+    }
 
     /// The level at which no face keeps the edge, or face, as it is any more.
     uint32_t edgeLeaves(uint32_t edge) const { return edgeLeaves_[edge]; }
     uint32_t faceLeaves(uint32_t face) const { return faceLeaves_[face]; }
 
 private:
-    static constexpr uint32_t kInside = 0, kPair = 1, kNoPath = 0xffffffff, kFirstStored = 2;
+    /// Codes of ways; of a stored one: its place in the chunk's list, and a bit for a strained one.
+    static constexpr uint32_t kStrained = 0x80000000, kInside = 0, kPair = 1, kNoPath = 0xffffffff, kFirstStored = 2;
     struct Chunk {
         RunningErrors& running;
         const std::vector<double>& errors; ///< before the edges raised them
         std::vector<uint32_t>& stored;
         PathSearch& search;
     };
+    glm::dvec3 crossing(uint32_t edge, const DrawnLevel& drawn, uint32_t triangle, uint32_t next) const;
     bool isKept(uint32_t edge, const DrawnLevel& drawn) const;
     uint32_t find(uint32_t edge, const DrawnLevel& drawn, Chunk& chunk) const;
-    void raise(uint32_t edge, const DrawnLevel& drawn, std::span<const uint32_t> path, RunningErrors& running) const;
+    bool raise(uint32_t edge, const DrawnLevel& drawn, std::span<const uint32_t> path, const Chunk& chunk) const;
     double largestError(uint32_t edge, const std::vector<double>& errors) const;
     double leastError(uint32_t edge, const RunningErrors& running) const;
 
     const MeasuredInput& input_;
     const TrackedMap& map_;
     std::vector<uint8_t> faceLeaves_, edgeLeaves_;
+    uint32_t level_ = 0;
     std::vector<uint32_t> codes_;
     std::vector<std::vector<uint32_t>> stored_; ///< per chunk: count and triangles of each longer way
 };

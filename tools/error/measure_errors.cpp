@@ -5,7 +5,6 @@
 #include <xgc/bake/error.h>
 
 #include <cmath>
-#include <memory>
 
 namespace xgc::bake {
 namespace {
@@ -32,7 +31,7 @@ class Measurement {
 public:
     Measurement(const Mesh& mesh, const Topology& topology, const Hierarchy& hierarchy)
         : input_{mesh, topology, hierarchy, std::pow(kFloor * diagonal(mesh), 2)}, walk_(mesh, hierarchy),
-          map_(input_, walk_.drawn()), paths_(input_, map_), coverage_(input_, map_, paths_),
+          map_(input_, walk_.drawn()), paths_(input_, map_), coverage_(input_, map_, paths_), inputTarget_(input_),
           errors_(hierarchy.patchCount(), 0.0), diagonal_(diagonal(mesh)) {}
 
     /// Squared errors of the next level.
@@ -50,6 +49,7 @@ public:
         paths_.advance(level_, drawn, isDrawnComponent, errors_);
         coverage_.advance(level_, drawn, isDrawnComponent, errors_);
         measureLoose(drawn);
+        measureStrained(drawn);
         measureBare(drawn);
         return errors_;
     }
@@ -62,14 +62,35 @@ private:
         const auto measure = [&](RunningErrors& running, uint32_t, uint32_t first, uint32_t last) {
             DirectBound bound(target, input_.floor);
             for (uint32_t i = first; i < last; ++i) {
-                const glm::uvec3 p = input_.mesh.facePositions(faces[i]);
-                const uint32_t patch = input_.hierarchy.facePatch[faces[i]];
-                running.raise(patch, bound.of({input_.point(p.x), input_.point(p.y), input_.point(p.z)},
-                                              {map_[p.x].triangle, map_[p.y].triangle, map_[p.z].triangle},
-                                              running.of(patch)));
+                measureFace(faces[i], bound, running);
             }
         };
         forChunks(faces.size(), errors_, measure, kDirectChunk);
+    }
+
+    /// Faces whose image is known but far: from the face to the drawn surface, and from the image to the input.
+    void measureStrained(const DrawnLevel& drawn) {
+        const std::vector<uint32_t>& faces = coverage_.strainedFaces();
+        if (faces.empty()) return;
+        const DrawnTarget surface(drawn);
+        const auto measure = [&](RunningErrors& running, uint32_t, uint32_t first, uint32_t last) {
+            DirectBound toSurface(surface, input_.floor), toInput(inputTarget_, input_.floor);
+            for (uint32_t i = first; i < last; ++i) {
+                measureFace(faces[i], toSurface, running);
+                for (const Coverage::Region& r : coverage_.imageOf(faces[i], drawn)) {
+                    const uint32_t patch = drawn.patches[r.triangle];
+                    running.raise(patch, toInput.ofHull(r.points, faces[i], running.of(patch)));
+                }
+            }
+        };
+        forChunks(faces.size(), errors_, measure, kDirectChunk);
+    }
+
+    void measureFace(uint32_t face, DirectBound& bound, RunningErrors& running) const {
+        const glm::uvec3 p = input_.mesh.facePositions(face);
+        const uint32_t patch = input_.hierarchy.facePatch[face];
+        running.raise(patch, bound.of({input_.point(p.x), input_.point(p.y), input_.point(p.z)},
+                                      {map_[p.x].triangle, map_[p.y].triangle, map_[p.z].triangle}, running.of(patch)));
     }
 
     /// From drawn triangles that are not known to be covered to the input.
@@ -86,9 +107,9 @@ private:
             measured_[t] = 1;
         }
         if (bare.empty()) return;
-        if (!inputTarget_) inputTarget_ = std::make_unique<InputTarget>(input_);
+        inputTarget_.prepare();
         const auto measure = [&](RunningErrors& running, uint32_t, uint32_t first, uint32_t last) {
-            DirectBound bound(*inputTarget_, input_.floor);
+            DirectBound bound(inputTarget_, input_.floor);
             for (uint32_t i = first; i < last; ++i) {
                 const glm::uvec3& c = drawn.triangles[bare[i]];
                 const uint32_t patch = drawn.patches[bare[i]];
@@ -110,9 +131,9 @@ private:
     TrackedMap map_;
     EdgePaths paths_;
     Coverage coverage_;
+    InputTarget inputTarget_;
     std::vector<double> errors_; ///< squared, per patch
     std::vector<uint8_t> measured_;
-    std::unique_ptr<InputTarget> inputTarget_;
     const double diagonal_;
     uint32_t level_ = 0;
 };

@@ -34,4 +34,18 @@ NearOnSegment segmentToSegment(const glm::dvec3& a, const glm::dvec3& b, const g
     return {squaredLength(r + u * s - v * t), s};
 }
 
+glm::dvec3 nearestOnTriangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    const glm::dvec3 n = glm::cross(b - a, c - a);
+    const double area2 = squaredLength(n);
+    if (area2 > 0) {
+        const double u = glm::dot(glm::cross(b - p, c - p), n), v = glm::dot(glm::cross(c - p, a - p), n);
+        if (u >= 0 && v >= 0 && u + v <= area2) return c + (a - c) * (u / area2) + (b - c) * (v / area2);
+    }
+    const NearOnSegment sides[3] = {segmentToPoint(a, b, p), segmentToPoint(b, c, p), segmentToPoint(c, a, p)};
+    const int k = sides[0].squared <= sides[1].squared ? (sides[0].squared <= sides[2].squared ? 0 : 2)
+                                                       : (sides[1].squared <= sides[2].squared ? 1 : 2);
+    const glm::dvec3 corners[3] = {a, b, c};
+    return corners[k] + (corners[(k + 1) % 3] - corners[k]) * sides[k].at;
+}
+
 } // namespace xgc::bake

@@ -17,4 +17,7 @@ NearOnSegment segmentToPoint(const glm::dvec3& a, const glm::dvec3& b, const glm
 /// Segment ab against the segment cd (Ericson, Real-Time Collision Detection, 5.1.9).
 NearOnSegment segmentToSegment(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d);
 
+/// The point of the triangle abc that is nearest to p (Ericson, 5.1.5).
+glm::dvec3 nearestOnTriangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
+
 } // namespace xgc::bake
