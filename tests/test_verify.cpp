@@ -73,6 +73,19 @@ TEST_CASE("an honest asset keeps every promise") {
     CHECK(report.worstErrorRatio > 0.3);
 }
 
+TEST_CASE("the tightness of errors is measured where it is asked for") {
+    Baked baked;
+    bakeSphere(baked, true);
+    CHECK(verify(baked.view).errorTightness == 0.0);
+    VerifyOptions options;
+    options.states = 0;
+    options.tightnessSamples = 2000;
+    VerifyReport report;
+    verifyAsset(baked.view, options, report);
+    CHECK(report.errorTightness > 0.99);
+    CHECK(report.errorTightness < 1.5);
+}
+
 TEST_CASE("errors that are too small are found") {
     Baked baked;
     bakeSphere(baked, false);

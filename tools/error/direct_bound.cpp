@@ -70,7 +70,7 @@ void DirectBound::split(const Piece& piece) {
     const int a = longest, b = (longest + 1) % 3;
     const double at = isCrossing ? crossing(piece, a, b) : 0.5;
     const glm::dvec3 middle = piece.corners[a] + (piece.corners[b] - piece.corners[a]) * at;
-    const NearTriangle near = target_.near(middle, piece.near[a].triangle, enough_);
+    const NearTriangle near = target_.near(middle, piece.near[a].triangle, floor_);
     Piece one = piece, other = piece;
     one.corners[b] = other.corners[a] = middle;
     one.near[b] = other.near[a] = near;
@@ -90,7 +90,7 @@ double DirectBound::of(const glm::dvec3 (&corners)[3], const uint32_t (&hints)[3
     enough_ = std::max(enough, floor_);
     for (int k = 0; k < 3; ++k) {
         whole.corners[k] = corners[k];
-        whole.near[k] = target_.near(corners[k], hints[k], enough_);
+        whole.near[k] = target_.near(corners[k], hints[k], floor_);
     }
     pieces_.clear();
     reached_ = 0;

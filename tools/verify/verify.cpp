@@ -8,8 +8,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <mutex>
+#include <numeric>
 
 namespace xgc::bake {
 namespace {
@@ -95,6 +97,22 @@ public:
         checkFlips(state, report);
         checkEdges(state, report);
         if (index < options_.errorStates) checkErrors(state, index, report);
+    }
+
+    /// E over the largest sampled deviation of each patch that deviates in the uniform state of a level.
+    std::vector<double> tightness(uint32_t level) const {
+        const State state = makeState(level);
+        std::vector<double> largest(asset_.patchCount(), 0.0);
+        std::vector<uint32_t> all(expanded_.faces.size());
+        std::iota(all.begin(), all.end(), 0u);
+        Random random(options_.seed + level);
+        sampleLargest(state.solid, state.solidFace, *base_, random, largest);
+        sampleLargest(expanded_.faces, all, *surface(state.solid), random, largest);
+        std::vector<double> ratios;
+        for (uint32_t p = 0; p < largest.size(); ++p) {
+            if (largest[p] > 1e-6 * asset_.record->sphereRadius) ratios.push_back(asset_.error(p, level) / largest[p]);
+        }
+        return ratios;
     }
 
     void checkMonotone(VerifyReport& report) const {
@@ -216,6 +234,26 @@ private:
         }
     }
 
+    /// Points of random triangles of each patch, inside, on edges and at corners, against the other surface.
+    void sampleLargest(const std::vector<glm::uvec3>& triangles, const std::vector<uint32_t>& face,
+                       const Nearest& other, Random& random, std::vector<double>& largest) const {
+        std::vector<std::vector<uint32_t>> ofPatch(asset_.patchCount());
+        for (uint32_t i = 0; i < face.size(); ++i) ofPatch[expanded_.facePatch[face[i]]].push_back(i);
+        for (uint32_t p = 0; p < ofPatch.size(); ++p) {
+            const uint32_t samples = ofPatch[p].empty() || triangles.empty() ? 0 : options_.tightnessSamples;
+            for (uint32_t i = 0; i < samples; ++i) {
+                const glm::uvec3 t = triangles[ofPatch[p][random.below(uint32_t(ofPatch[p].size()))]];
+                double u = random.unit(), v = random.unit();
+                if (u + v > 1) u = 1 - u, v = 1 - v;
+                if (i % 3 == 1) u = 0;
+                if (i % 3 == 2) u = v = 0;
+                const glm::dvec3 a(asset_.positions[t.x]), b(asset_.positions[t.y]), c(asset_.positions[t.z]);
+                const double distance = other.distance(glm::vec3(a + u * (b - a) + v * (c - a)));
+                if (std::isfinite(distance)) largest[p] = std::max(largest[p], distance);
+            }
+        }
+    }
+
     void checkErrors(const State& state, uint32_t index, VerifyReport& report) const {
         Random random(options_.seed + index);
         sampleError(state, state.solid, state.solidFace, *base_, random, report);
@@ -244,6 +282,17 @@ void add(VerifyReport& sum, const VerifyReport& r) {
     sum.worstErrorRatio = std::max(sum.worstErrorRatio, r.worstErrorRatio);
 }
 
+double medianTightness(const Checker& checker, uint32_t levelCount) {
+    std::vector<std::vector<double>> ofLevel(levelCount);
+    tbb::parallel_for(uint32_t(1), levelCount, [&](uint32_t level) { ofLevel[level] = checker.tightness(level); });
+    std::vector<double> all;
+    for (const std::vector<double>& ratios : ofLevel) all.insert(all.end(), ratios.begin(), ratios.end());
+    if (all.empty()) return 0;
+    const auto middle = all.begin() + std::ptrdiff_t(all.size() / 2);
+    std::nth_element(all.begin(), middle, all.end());
+    return *middle;
+}
+
 } // namespace
 
 bool VerifyReport::ok() const {
@@ -254,7 +303,7 @@ bool VerifyReport::ok() const {
 void verifyAsset(const AssetView& asset, const VerifyOptions& options, VerifyReport& report) {
     Checker checker(asset, options);
     checker.checkMonotone(report);
-    if (options.errorStates > 0) checker.prepareErrors();
+    if (options.errorStates > 0 || options.tightnessSamples > 0) checker.prepareErrors();
     const uint32_t count = asset.levelCount() + options.states;
     tbb::enumerable_thread_specific<VerifyReport> partial;
     std::mutex mutex;
@@ -266,6 +315,7 @@ void verifyAsset(const AssetView& asset, const VerifyOptions& options, VerifyRep
         options.progress(double(++finished) / count);
     });
     for (const VerifyReport& r : partial) add(report, r);
+    if (options.tightnessSamples > 0) report.errorTightness = medianTightness(checker, asset.levelCount());
 }
 
 void verifySource(const AssetView& asset, const Mesh& source, VerifyReport& report) {

@@ -16,11 +16,14 @@
 namespace xgc::tool {
 namespace {
 
+constexpr uint32_t kTightnessSamples = 1000;
+
 struct VerifyArguments {
     std::string file, source;
     bake::VerifyOptions options;
     float weldTolerance = 0;
     uint32_t jobs = 0;
+    bool error = false;
     bool json = false;
     bool quiet = false;
 };
@@ -38,6 +41,7 @@ void printJson(const bake::VerifyReport& r) {
                                 {"errorSamples", r.errorSamples},
                                 {"errorViolations", r.errorViolations},
                                 {"worstErrorRatio", r.worstErrorRatio},
+                                {"errorTightness", r.errorTightness},
                                 {"sourceMismatches", r.sourceMismatches}};
     fmt::print("{}\n", json.dump(2));
 }
@@ -53,6 +57,7 @@ void printText(const std::string& file, const bake::VerifyReport& r) {
     fmt::print("  errors that fall            {}\n", r.fallingErrors);
     fmt::print("  error samples               {}, beyond the promise {}, worst ratio {:.3f}\n", r.errorSamples,
                r.errorViolations, r.worstErrorRatio);
+    if (r.errorTightness > 0) fmt::print("  error over largest sample   {:.3f} (median)\n", r.errorTightness);
     fmt::print("  differing from the source   {}\n", r.sourceMismatches);
 }
 
@@ -71,6 +76,10 @@ bake::Status runVerify(VerifyArguments& arguments) {
     if (arguments.jobs > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, arguments.jobs);
     OpenAsset asset;
     if (bake::Status s = openAsset(arguments.file, asset); !s.ok()) return s;
+    if (arguments.error) {
+        arguments.options.errorStates = ~0u;
+        arguments.options.tightnessSamples = kTightnessSamples;
+    }
     bake::VerifyReport report;
     if (!arguments.source.empty()) {
         if (bake::Status s = compareSource(arguments, asset.view, report); !s.ok()) return s;
@@ -104,6 +113,8 @@ void addVerify(CLI::App& app, Run& run) {
     verify->add_option("--seed", arguments->options.seed, "Of the random states")->capture_default_str();
     verify->add_option("--error-states", arguments->options.errorStates, "States whose error is sampled; 0: none")
         ->capture_default_str();
+    verify->add_flag("--error", arguments->error,
+                     "Sample the error of all states, uniform and random, and measure how tight the errors are");
     verify->add_option("--jobs", arguments->jobs, "Threads; 0: all cores")->capture_default_str();
     verify->add_flag("--json", arguments->json, "Print JSON (documented in tools/README.md)");
     verify->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
