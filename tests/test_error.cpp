@@ -131,7 +131,6 @@ double checkBounds(const Mesh& mesh, const Hierarchy& h, uint32_t samples) {
 }
 
 Model bumpy(Model model, float height) {
-    Numbers numbers;
     for (glm::vec3& p : model.positions) {
         const float wave = std::sin(7 * p.x + 1) * std::cos(5 * p.y) * std::sin(6 * p.z + 2 + 3 * p.x);
         p *= 1 + height * wave;
