@@ -10,11 +10,11 @@ namespace {
 constexpr double kNormalWeight = 0.05, kUvWeight = 0.05;
 
 std::vector<Source> sourcesOf(const Flags& flags) {
-    std::vector<Source> sources{{"temple", {}, 60'000}};
+    std::vector<Source> sources{{"temple", {}, 60'000}, {"terrain", {}, 60'000, false, true}};
     if (flags.data.empty()) return sources;
     sources.push_back(helmet(flags.data));
-    sources.push_back({"spot", flags.data / "mesh/spot.obj"});
-    sources.push_back({"fox", flags.data / "gltf/Fox.glb"});
+    for (const char* name : {"boat", "koala", "armadillo", "fandisk"})
+        sources.push_back({name, flags.data / "mesh" / fmt::format("{}.obj", name), 0, false, true});
     return sources;
 }
 

@@ -2,6 +2,7 @@
 
 #include <xgc/bake/import.h>
 #include <xgc/bake/models.h>
+#include <xgc/bake/normals.h>
 
 #include <fmt/format.h>
 
@@ -102,6 +103,7 @@ bake::Status load(const Source& source, Subject& out) {
     if (source.plain) model.attributes = {};
     if (bake::Status s = bake::weld(model, {}, out.mesh, out.weld); !s.ok()) return s;
     out.topology = bake::buildTopology(out.mesh);
+    if (source.normals) bake::addMissingNormals(out.mesh, out.topology);
     out.parts = source.plain ? bake::segmentNone(out.mesh) : bake::segmentThesis(out.mesh, out.topology, {});
     return {};
 }

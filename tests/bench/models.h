@@ -24,6 +24,7 @@ struct Source {
     std::filesystem::path file; ///< empty: the bundled model `name`
     uint32_t faces = 0;         ///< of the bundled model
     bool plain = false;         ///< positions alone, one part: for what is timed
+    bool normals = false;       ///< with smooth ones, as a bake makes them, where the file has none
 };
 
 /// One model of each category of the Princeton segmentation benchmark, and one more: 20 files below `data`.
@@ -35,7 +36,7 @@ Source helmet(const std::filesystem::path& data);
 /// The Stanford dragon as `tools/dev bench` fetches it, where it has.
 std::vector<Source> dragon();
 
-/// Reads, welds and cuts into parts. Positions without normals stay so.
+/// Reads, welds and cuts into parts.
 bake::Status load(const Source& source, Subject& out);
 
 /// `count` connected pieces of a mesh around random seeds, evened out by Lloyd's iterations on the graph of faces; a
