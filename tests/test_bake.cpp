@@ -135,6 +135,59 @@ TEST_CASE("a bake that is cancelled or fails leaves the target as it was") {
     CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator{}) == 2);
 }
 
+TEST_CASE("a strict bake with warnings fails, grades, and leaves the target as it was") {
+    const Folder folder;
+    Model model = twoSpheres();
+    writeOff(model, folder.path / "in.off");
+    std::ofstream(folder.path / "out.xgc") << "before";
+    BakeOptions options = optionsFor(folder, "out.xgc");
+    options.parts = PartSource::none;
+    options.strict = true;
+    BakeReport report;
+    const bake::Status clean = bake::bake(options, report);
+    REQUIRE_MESSAGE(clean.ok(), clean.message);
+    CHECK(report.warningCount() == 0);
+    CHECK(contents(options.output) != "before");
+
+    std::ofstream(folder.path / "out.xgc") << "before";
+    std::swap(model.triangles[0].x, model.triangles[0].y); // winds against its neighbours
+    writeOff(model, folder.path / "in.off");
+    const bake::Status refused = bake::bake(options, report);
+    CHECK(refused.outcome == Outcome::promiseBroken);
+    CHECK(refused.message.find("out.xgc is untouched") != std::string::npos);
+    CHECK(report.warningCount() > 0);
+    CHECK(!report.levels.empty());
+    CHECK(contents(options.output) == "before");
+
+    options.strict = false;
+    CHECK(bake::bake(options, report).ok());
+    CHECK(contents(options.output) != "before");
+}
+
+TEST_CASE("the sizes of sections and streams add up to the file, compressed or not") {
+    const Folder folder;
+    writeOff(twoSpheres(), folder.path / "in.off");
+    BakeOptions options = optionsFor(folder, "out.xgc");
+    for (const bool compress : {false, true}) {
+        options.compress = compress;
+        BakeReport report;
+        REQUIRE(bake::bake(options, report).ok());
+        const auto stored = [](const std::vector<SizeReport>& sizes) {
+            uint64_t sum = 0;
+            for (const SizeReport& s : sizes) sum += s.storedBytes;
+            return sum;
+        };
+        const uint64_t sum = stored(report.sizes.sections) + stored(report.sizes.streams);
+        CHECK(sum <= report.fileBytes);
+        const size_t pieces = report.sizes.sections.size() + report.sizes.streams.size() + 2;
+        CHECK(report.fileBytes <= sum + 64 * pieces + 48 * report.sizes.sections.size()); // headers, alignment
+        CHECK(report.sizes.streams.front().name == std::string("position"));
+        CHECK(report.sizes.streams.front().rawBytes == 12 * report.vertices);
+        const bool smaller = report.sizes.streams.front().storedBytes < report.sizes.streams.front().rawBytes;
+        CHECK(smaller == compress);
+    }
+}
+
 TEST_CASE("the report holds every stage, level and verdict") {
     const Folder folder;
     Model open = test::grid(8);
@@ -146,7 +199,8 @@ TEST_CASE("the report holds every stage, level and verdict") {
     REQUIRE(bake::bake(options, report).ok());
     CHECK(report.weld.duplicateFaces == 1);
     const auto json = nlohmann::json::parse(reportJson(options, report));
-    for (const char* key : {"input", "stages", "faces", "parts", "patches", "levels", "verdicts"})
+    for (const char* key :
+         {"input", "stages", "faces", "parts", "patches", "sections", "streams", "levels", "verdicts"})
         CHECK(json.contains(key));
     CHECK(json["stages"].size() == 7);
     CHECK(json["faces"] == 128);

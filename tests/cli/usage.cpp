@@ -79,7 +79,8 @@ TEST_CASE("JSON has the documented keys, and work without a terminal draws no pr
     CHECK(baked.out.empty());
 
     const Json bake = Json::parse(readText(report));
-    checkKeys(bake, {"input", "stages", "faces", "parts", "patches", "levels", "verdicts"});
+    checkKeys(bake, {"input", "stages", "faces", "parts", "patches", "sections", "streams", "levels", "verdicts"});
+    checkKeys(bake["streams"][0], {"name", "set", "rawBytes", "storedBytes"});
     REQUIRE_FALSE(bake["stages"].empty());
     checkKeys(bake["stages"][0], {"name", "seconds", "peakBytes"});
     for (const Json& verdict : bake["verdicts"]) checkKeys(verdict, {"severity", "what", "where", "remedy"});
@@ -94,6 +95,39 @@ TEST_CASE("JSON has the documented keys, and work without a terminal draws no pr
     checkKeys(verify,
               {"ok", "states", "faces", "flips", "oddEdges", "fourUseEdges", "errorSamples", "errorViolations"});
     CHECK(verify["ok"] == true);
+}
+
+TEST_CASE("a strict bake with warnings exits with 1, writes its report and no asset") {
+    const Folder folder("strict");
+    const std::string in = folder.file("cube.obj"), out = folder.file("cube.xgc"), report = folder.file("cube.json");
+    const std::string cube = cubeObj(12);
+    writeText(in, cube);
+    CHECK(runXgc({"bake", in, "-o", out, "--strict"}).exitCode == 0);
+    CHECK(folder.names() == std::vector<std::string>{"cube.obj", "cube.xgc"});
+    std::filesystem::remove(out);
+
+    writeText(in, cube + "v 9 9 9\nf 1 2 -1\n"); // a third face at an edge
+    const RunResult strict = runXgc({"bake", in, "-o", out, "--strict", "--report", report});
+    CHECK(strict.exitCode == 1);
+    CHECK(strict.err.find("warning: ") != std::string::npos);
+    CHECK(strict.err.find("cube.xgc is untouched") != std::string::npos);
+    CHECK(folder.names() == std::vector<std::string>{"cube.json", "cube.obj"});
+    CHECK(Json::parse(readText(report))["verdicts"][0]["severity"] == "warning");
+    CHECK(runXgc({"bake", in, "-o", out}).exitCode == 0);
+}
+
+TEST_CASE("bake --verbose prints stages, levels and sizes, and cannot be quiet") {
+    const Folder folder("verbose");
+    const std::string in = folder.file("cube.obj"), out = folder.file("cube.xgc");
+    writeText(in, cubeObj(6));
+    const RunResult run = runXgc({"bake", in, "-o", out, "--verbose"});
+    CHECK(run.exitCode == 0);
+    for (const char* word : {"measure", "level", "position", "tables"}) {
+        INFO(word);
+        CHECK(run.err.find(word) != std::string::npos);
+    }
+    CHECK(runXgc({"bake", in, "-o", out}).err.find("tables") == std::string::npos);
+    CHECK(runXgc({"bake", in, "-o", out, "--verbose", "--quiet"}).exitCode == 2);
 }
 
 TEST_CASE("a baked asset does not depend on the number of threads") {

@@ -157,7 +157,20 @@ Status compress(const BakeOptions& options, Work& work, BakeReport& report) {
     return s;
 }
 
+/// Refuses to write what its report warns of.
+Status obey(const BakeOptions& options, const BakeReport& report) {
+    const uint32_t warnings = report.warningCount();
+    if (!options.strict || warnings == 0) return {};
+    return {Outcome::promiseBroken, fmt::format("strict: {} {}: {} is untouched", warnings,
+                                                warnings == 1 ? "warning" : "warnings", options.output.string())};
+}
+
 } // namespace
+
+uint32_t BakeReport::warningCount() const {
+    return uint32_t(std::count_if(verdicts.begin(), verdicts.end(),
+                                  [](const Verdict& v) { return v.severity == Severity::warning; }));
+}
 
 Status bake(const BakeOptions& options, BakeReport& report) {
     report = {};
@@ -178,7 +191,9 @@ Status bake(const BakeOptions& options, BakeReport& report) {
     if (s.ok()) s = stage("measure", [&] { return measure(options, work, report); });
     if (s.ok()) s = stage("lay out", [&] { return layOut(options, work, report); });
     if (s.ok() && options.compress) s = stage("compress", [&] { return compress(options, work, report); });
+    if (s.ok()) report.sizes = sizesOf(work.bytes);
     if (s.ok()) judge(options, report);
+    if (s.ok()) s = obey(options, report);
     if (s.ok()) s = stage("write", [&] { return writeFileAtomically(options.output, work.bytes); });
     return s;
 }

@@ -43,6 +43,17 @@ Json levelJson(const HierarchyLevelReport& level, float error) {
             {"seconds", level.seconds}};
 }
 
+Json sizesJson(const std::vector<SizeReport>& sizes, bool sets) {
+    Json json = Json::array();
+    for (const SizeReport& s : sizes) {
+        json.push_back({{"name", s.name}});
+        if (sets) json.back()["set"] = s.set;
+        json.back()["rawBytes"] = s.rawBytes;
+        json.back()["storedBytes"] = s.storedBytes;
+    }
+    return json;
+}
+
 } // namespace
 
 std::string reportJson(const BakeOptions& options, const BakeReport& report) {
@@ -59,6 +70,9 @@ std::string reportJson(const BakeOptions& options, const BakeReport& report) {
     json["parts"] = report.parts;
     json["patches"] = report.patches;
     json["fileBytes"] = report.fileBytes;
+    json["imageBytes"] = report.imageBytes;
+    json["sections"] = sizesJson(report.sizes.sections, false);
+    json["streams"] = sizesJson(report.sizes.streams, true);
     json["levels"] = Json::array();
     for (size_t l = 0; l < report.levels.size(); ++l) {
         json["levels"].push_back(

@@ -23,7 +23,7 @@ struct BakeArguments {
                 importanceColor;
     std::vector<std::string> lockedParts, importances;
     uint32_t jobs = 0;
-    bool quiet = false;
+    bool quiet = false, verbose = false;
     bake::BakeOptions options;
 };
 
@@ -98,6 +98,42 @@ bake::Status parse(const BakeArguments& arguments, bake::BakeOptions& options) {
     return {};
 }
 
+void printStages(const bake::BakeReport& report) {
+    fmt::print(stderr, "{:<10} {:>8} {:>10}\n", "stage", "seconds", "peak MiB");
+    for (const bake::StageReport& s : report.stages)
+        fmt::print(stderr, "{:<10} {:>8.2f} {:>10.0f}\n", s.name, s.seconds, double(s.peakBytes) / 0x1p20);
+}
+
+/// What each level has, and what kept it from having less.
+void printLevels(const bake::BakeReport& report) {
+    fmt::print(stderr, "{:>5} {:>10} {:>7} {:>11} {:>10} {:>9} {:>9} {:>9} {:>8}\n", "level", "faces", "%", "error",
+               "collapses", "no link", "no flip", "no seam", "seconds");
+    for (size_t l = 0; l < report.levels.size(); ++l) {
+        const bake::HierarchyLevelReport& level = report.levels[l];
+        fmt::print(stderr, "{:>5} {:>10} {:>7.2f} {:>11.4g} {:>10} {:>9} {:>9} {:>9} {:>8.3f}\n", l, level.faces,
+                   100.0 * level.faces / std::max(1u, report.faces),
+                   l < report.levelErrors.size() ? report.levelErrors[l] : 0.0f, level.collapses, level.linkRefused,
+                   level.flipRefused, level.wedgeRefused, level.seconds);
+    }
+}
+
+/// Streams in full, sections as one line.
+void printSizes(const bake::BakeReport& report) {
+    uint64_t raw = 0, stored = 0;
+    for (const bake::SizeReport& s : report.sizes.sections) {
+        raw += s.rawBytes;
+        stored += s.storedBytes;
+    }
+    const auto line = [&](const std::string& name, uint64_t rawBytes, uint64_t storedBytes) {
+        fmt::print(stderr, "{:<14} {:>12} {:>12} {:>7.1f}\n", name, rawBytes, storedBytes,
+                   100.0 * double(storedBytes) / double(std::max<uint64_t>(1, report.fileBytes)));
+    };
+    fmt::print(stderr, "{:<14} {:>12} {:>12} {:>7}\n", "stream", "bytes", "in file", "%");
+    for (const bake::SizeReport& s : report.sizes.streams)
+        line(s.set > 0 ? fmt::format("{} {}", s.name, s.set) : s.name, s.rawBytes, s.storedBytes);
+    line("tables", raw, stored);
+}
+
 void printSummary(const bake::BakeOptions& options, const bake::BakeReport& report) {
     double seconds = 0;
     for (const bake::StageReport& s : report.stages) seconds += s.seconds;
@@ -108,6 +144,22 @@ void printSummary(const bake::BakeOptions& options, const bake::BakeReport& repo
         const char* severity = v.severity == bake::Severity::warning ? "warning" : "note";
         fmt::print(stderr, "{}: {}: {} ({})\n", severity, v.where, v.what, v.remedy);
     }
+}
+
+void print(const BakeArguments& arguments, const bake::BakeReport& report) {
+    if (arguments.quiet) return;
+    if (arguments.verbose) {
+        printStages(report);
+        printLevels(report);
+        printSizes(report);
+    }
+    printSummary(arguments.options, report);
+}
+
+bake::Status writeReports(const BakeArguments& arguments, const bake::BakeReport& report) {
+    if (arguments.report.empty()) return {};
+    const std::string json = bake::reportJson(arguments.options, report);
+    return bake::writeFileAtomically(arguments.report, std::as_bytes(std::span(json)));
 }
 
 bake::Status runBake(BakeArguments& arguments) {
@@ -125,11 +177,11 @@ bake::Status runBake(BakeArguments& arguments) {
         options.progress = [&](const char* stage, double fraction) { progress.show(stage, fraction); };
         status = bake::bake(options, report);
     }
-    if (!status.ok()) return status;
-    if (!arguments.quiet) printSummary(options, report);
-    if (arguments.report.empty()) return status;
-    const std::string json = bake::reportJson(options, report);
-    return bake::writeFileAtomically(arguments.report, std::as_bytes(std::span(json)));
+    const bool graded = status.ok() || status.outcome == bake::Outcome::promiseBroken;
+    if (!graded) return status;
+    print(arguments, report);
+    const bake::Status written = writeReports(arguments, report);
+    return status.ok() ? written : status;
 }
 
 } // namespace
@@ -182,7 +234,10 @@ void addBake(CLI::App& app, Run& run) {
         ->capture_default_str();
     bake->add_option("--report", arguments->report, "Write a report as JSON");
     bake->add_option("--jobs", arguments->jobs, "Threads; 0: all cores")->capture_default_str();
-    bake->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
+    bake->add_flag("--strict", arguments->options.strict,
+                   "Warnings fail the bake: exit code 1, nothing written but the report");
+    CLI::Option* verbose = bake->add_flag("--verbose", arguments->verbose, "Print stages, levels and sizes as well");
+    bake->add_flag("--quiet", arguments->quiet, "Print nothing but errors")->excludes(verbose);
     bake->footer("Example: xgc bake creature.glb -o creature.xgc --report creature.json");
     bake->callback([arguments, &run] { run = [arguments] { return runBake(*arguments); }; });
 }

@@ -1,6 +1,8 @@
 #include "commands.h"
 #include "open_asset.h"
 
+#include <xgc/bake/asset_sizes.h>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -11,41 +13,6 @@ namespace xgc::tool {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-const char* streamName(format::StreamKind kind) {
-    using format::StreamKind;
-    switch (kind) {
-    case StreamKind::position:
-        return "position";
-    case StreamKind::normal:
-        return "normal";
-    case StreamKind::tangent:
-        return "tangent";
-    case StreamKind::uv:
-        return "uv";
-    case StreamKind::color:
-        return "color";
-    case StreamKind::joints:
-        return "joints";
-    case StreamKind::weights:
-        return "weights";
-    case StreamKind::collapseLevel:
-        return "collapseLevel";
-    case StreamKind::birthLevel:
-        return "birthLevel";
-    case StreamKind::parentNarrow:
-        return "parentNarrow";
-    case StreamKind::parentWide:
-        return "parentWide";
-    case StreamKind::cornerNarrow:
-        return "cornerNarrow";
-    case StreamKind::cornerWide:
-        return "cornerWide";
-    case StreamKind::death:
-        return "death";
-    }
-    return "unknown";
-}
 
 /// Bytes of the installed image: the tables and the decoded pages.
 uint64_t memoryBytes(const AssetView& asset) {
@@ -118,7 +85,7 @@ Json inspectJson(const AssetView& asset) {
     json["streams"] = Json::array();
     for (const format::StreamRecord& s : asset.streams) {
         json["streams"].push_back(
-            {{"name", streamName(s.kind)}, {"set", s.set}, {"count", s.count}, {"bytes", s.rawBytes}});
+            {{"name", bake::streamName(s.kind)}, {"set", s.set}, {"count", s.count}, {"bytes", s.rawBytes}});
     }
     json["partList"] = partsJson(asset);
     json["provenance"] = Json::parse(asset.provenance, nullptr, false);

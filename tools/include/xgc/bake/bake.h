@@ -1,5 +1,6 @@
 #pragma once
 
+#include <xgc/bake/asset_sizes.h>
 #include <xgc/bake/asset_writer.h>
 #include <xgc/bake/compress.h>
 #include <xgc/bake/default_hierarchy.h>
@@ -52,6 +53,7 @@ struct BakeOptions {
     RoundingOptions rounding;
     bool compress = false; ///< false: the file can be mapped and opened where it lies
     CompressOptions compression;
+    bool strict = false; ///< a warning among the verdicts fails the bake before it writes
     /// Told a stage's name and finished fraction, on the calling thread.
     std::function<void(const char* stage, double fraction)> progress;
     /// Set from anywhere (a signal handler) to stop at the next step; the target is then untouched.
@@ -87,11 +89,14 @@ struct BakeReport {
     uint32_t patches = 0;
     uint64_t fileBytes = 0;
     uint64_t imageBytes = 0; ///< of the file before it was compressed
+    AssetSizes sizes;        ///< what the file's bytes are
     std::vector<Verdict> verdicts;
+    uint32_t warningCount() const;
 };
 
 /// From a model file to an `.xgc` file: import, weld, segment, build, measure, lay out, write. The target is whole or
-/// untouched. The same input and options give the same bytes on any machine at any number of threads (TBB's).
+/// untouched. With `strict`, warnings make it `Outcome::promiseBroken`. The same input and options give the same bytes
+/// on any machine at any number of threads (TBB's).
 Status bake(const BakeOptions& options, BakeReport& report);
 
 /// The report as JSON, as documented in tools/README.md.

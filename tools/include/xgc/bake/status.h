@@ -8,7 +8,7 @@ namespace xgc::bake {
 /// Outcome of a step of the pipeline; the values are the exit codes of the command line.
 enum class Outcome : int {
     ok = 0,
-    promiseBroken = 1, ///< `verify` found a state that breaks a promise
+    promiseBroken = 1, ///< `verify` found a state that breaks a promise, or a strict bake has warnings
     usage = 2,
     badInput = 3, ///< the message names file, element and remedy
     system = 4,   ///< the device or the system refused
