@@ -74,7 +74,8 @@ void printRatios(const std::string& title, const Ratios& ratios) {
     fmt::print("\n{:<36}", title);
     for (const double target : kTargets) fmt::print("{:>8} %", target);
     fmt::print("\n");
-    for (const auto& [program, byTarget] : ratios) {
+    for (const auto& entry : ratios) {
+        const std::map<double, std::vector<double>, std::greater<>>& byTarget = entry.second;
         const auto line = [&](const std::string& name, auto&& cell) {
             fmt::print("{:<36}", name);
             for (const double target : kTargets) {
@@ -83,7 +84,7 @@ void printRatios(const std::string& title, const Ratios& ratios) {
             }
             fmt::print("\n");
         };
-        line(program, [](const std::vector<double>& v) { return fmt::format("{:.3f}", median(v)); });
+        line(entry.first, [](const std::vector<double>& v) { return fmt::format("{:.3f}", median(v)); });
         line("  worst", [](const std::vector<double>& v) { return fmt::format("{:.2f}", std::ranges::max(v)); });
         line("  models", [](const std::vector<double>& v) { return std::to_string(v.size()); });
     }
