@@ -62,39 +62,31 @@ void BoundaryCollapser::gatherStar(uint32_t vertex, std::vector<StarFace>& star)
 }
 
 void BoundaryCollapser::gatherEdges(const std::vector<StarFace>& star, std::vector<StarEdge>& edges) const {
-    struct Use {
-        uint32_t to, patch;
-        bool operator<(const Use& other) const { return to != other.to ? to < other.to : patch < other.patch; }
-    };
-    thread_local std::vector<Use> uses;
-    uses.clear();
+    thread_local std::vector<uint32_t> ends;
+    ends.clear();
     for (const StarFace& f : star) {
-        uses.push_back({f.next, f.patch});
-        uses.push_back({f.previous, f.patch});
+        ends.push_back(f.next);
+        ends.push_back(f.previous);
     }
-    std::sort(uses.begin(), uses.end());
+    std::sort(ends.begin(), ends.end());
     edges.clear();
-    for (size_t i = 0; i < uses.size(); ++i) {
-        if (i == 0 || uses[i].to != uses[i - 1].to) edges.push_back({uses[i].to, 0, false});
+    for (const uint32_t end : ends) {
+        if (edges.empty() || edges.back().to != end) edges.push_back({end, 0});
         ++edges.back().faces;
-        edges.back().severalPatches |= edges.back().faces > 1 && uses[i].patch != uses[i - 1].patch;
     }
 }
 
-/// Along borders (and where sheets meet) if it has any; else along boundaries of patches; else, once the patches beside
-/// it have died, or where it is of one patch, to any boundary vertex.
+/// Along borders (and where sheets meet) if it has any; else to any boundary vertex beside it, across a patch too.
 void BoundaryCollapser::evaluate(uint32_t vertex) {
     if (std::isinf(state_.costScale[vertex])) return; // locked
     gatherStar(vertex, star_);
     gatherEdges(star_, edges_);
-    int strongest = 0;
-    const auto strength = [](const StarEdge& e) { return e.faces != 2 ? 2 : e.severalPatches ? 1 : 0; };
-    for (const StarEdge& e : edges_) strongest = std::max(strongest, strength(e));
+    const bool onBorder = std::any_of(edges_.begin(), edges_.end(), [](const StarEdge& e) { return e.faces != 2; });
     const Blocked blocked = blocked_[vertex];
     double best = std::numeric_limits<double>::infinity();
     uint32_t bestTarget = kNone;
     for (const StarEdge& e : edges_) {
-        if (strength(e) < strongest || !state_.isBoundary[e.to]) continue;
+        if ((onBorder && e.faces == 2) || !state_.isBoundary[e.to]) continue;
         const double cost = costOf(vertex, e.to);
         if (cost < blocked.cost || (cost == blocked.cost && e.to <= blocked.target)) continue;
         if (cost > best || (cost == best && e.to >= bestTarget)) continue;

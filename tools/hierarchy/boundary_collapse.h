@@ -4,8 +4,8 @@
 
 namespace xgc::bake {
 
-/// Collapses boundary vertices of the uniform state into one another along borders and boundaries of patches, cheapest
-/// first. A step v -> u has the domain of v, and widens that of u by it: so domains grow along every chain.
+/// Collapses boundary vertices of the uniform state into one another, those on borders along borders, cheapest first. A
+/// step v -> u has the domain of v, and widens that of u by it: so domains grow along every chain.
 class BoundaryCollapser {
 public:
     BoundaryCollapser(SurfaceState& state, std::vector<InteriorCollapser>& interiors, Placement placement);
@@ -30,7 +30,6 @@ private:
     struct StarEdge {
         uint32_t to;
         uint32_t faces;
-        bool severalPatches;
     };
 
     void gatherStar(uint32_t vertex, std::vector<StarFace>& star);
