@@ -25,13 +25,16 @@ private:
     ZSTD_DCtx_s* context_ = nullptr;
 };
 
+/// Bytes of `work` past what a decoder unpacks, which it may read, never believing them.
+inline constexpr uint64_t kSlack = 64;
+
 /// What decoders share. The tables of `view` have been opened, in the image; its streams hold nothing yet.
 struct Decoding {
     const AssetView& view;
     Inflater& inflater;
     std::span<uint32_t> references;             ///< a row each: the row that it is coded against, itself for the first
     std::span<uint32_t> narrowSlots, wideSlots; ///< slots of the patches of one width in order of first use
-    std::span<std::byte> work;
+    std::span<std::byte> work; ///< aligned as the slots are; holds the rows of any patch, and what a stream unpacks to
 };
 
 /// Bytes that decodeFaces unpacks into `work`.

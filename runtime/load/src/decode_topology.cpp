@@ -19,6 +19,7 @@ namespace {
 using namespace format;
 
 constexpr uint32_t kStray = 255;
+constexpr uint32_t kFar = 15;
 constexpr uint32_t kHistory = 16;
 
 uint32_t unzigzag(uint32_t z) {
@@ -67,7 +68,73 @@ FaceCodes<Slot> split(std::span<const std::byte> work, const FacesHeader& h, siz
     return c;
 }
 
-/// Decodes patch after patch; the first damage sticks.
+/// The faces of one patch, from its slots in order of first use. What kind a corner is cannot be foreseen, so that
+/// branches would be missed: all kinds are looked up and one is chosen. Lookups may read a few elements past a table
+/// (`kSlack`) before the damage is noticed. An object of its own in `decodePatch`, so that it lives in registers.
+template <typename Slot>
+struct FaceLoop {
+    struct Edge {
+        uint32_t a, b;
+    };
+
+    const uint32_t* slots;
+    const uint8_t* misses;
+    const uint8_t* farBytes;
+    size_t farCount;
+    uint32_t used = 0, far = 0, lastFar = 0, edgeCount = 0, vertexCount = 0;
+    uint32_t isDamaged = 0;
+    Edge edges[kHistory] = {};
+    uint32_t vertices[kHistory] = {};
+
+    uint32_t vertex(uint32_t code) {
+        // All ones where the vertex is new, or far; compilers make branches of anything but masks.
+        const auto isNew = uint32_t(int32_t(code - 1) >> 31), isFar = uint32_t(int32_t(kFar - 1 - code) >> 31);
+        uint32_t z = farBytes[far];
+        for (size_t p = 1; p < sizeof(Slot); ++p) z |= uint32_t(farBytes[p * farCount + far]) << (8 * p);
+        const uint32_t farRank = lastFar + (unzigzag(z) & isFar);
+        const auto isKnown = uint32_t((int64_t(farRank) - int64_t(used)) >> 63);
+        const uint32_t rank = (used & isNew) | (farRank & isFar & isKnown), isListed = isNew | isFar;
+        const uint32_t recent = vertices[(vertexCount - code) % kHistory];
+        const uint32_t slot = recent ^ ((recent ^ slots[rank]) & isListed);
+        isDamaged |= isFar & ~isKnown;
+        lastFar = farRank;
+        used -= isNew;
+        far -= isFar;
+        vertices[vertexCount % kHistory] = slot; // the next takes its place where it is an old one
+        vertexCount -= isListed;
+        return slot;
+    }
+
+    void meet(uint32_t a, uint32_t b) { edges[edgeCount++ % kHistory] = {a, b}; }
+
+    glm::uvec3 face(uint8_t code) {
+        uint32_t a = 0, b = 0;
+        if (code < 0xf0) {
+            const Edge shared = edges[(edgeCount - 1 - (code >> 4)) % kHistory];
+            a = shared.a;
+            b = shared.b;
+        } else {
+            const uint8_t pair = *misses++;
+            a = vertex(pair >> 4);
+            b = vertex(pair & 15);
+            meet(b, a);
+        }
+        const uint32_t c = vertex(code & 15);
+        meet(c, b);
+        meet(a, c);
+        return {a, b, c};
+    }
+};
+
+/// The corners from the `by`-th on.
+template <typename Slot>
+void store(const glm::uvec3& f, bool fromSecond, bool fromThird, Slot* out) {
+    out[0] = Slot(fromThird ? f.z : fromSecond ? f.y : f.x);
+    out[1] = Slot(fromThird ? f.x : fromSecond ? f.z : f.y);
+    out[2] = Slot(fromThird ? f.y : fromSecond ? f.x : f.z);
+}
+
+/// Decodes patch after patch.
 template <typename Slot>
 class FaceDecoder {
 public:
@@ -75,20 +142,7 @@ public:
 
     /// `slots` receives the patch's slots in order of first use.
     bool patch(uint32_t interiorSlot, std::span<uint32_t> slots, std::span<Slot> corners) {
-        slots_ = slots;
-        used_ = 0;
-        lastFar_ = 0;
-        std::fill(std::begin(edges_), std::end(edges_), Edge{0, 0});
-        std::fill(std::begin(vertices_), std::end(vertices_), 0u);
-        edgeCount_ = vertexCount_ = 0;
-        if (!readRuns(interiorSlot)) return false;
-        for (size_t i = 0; i < corners.size(); i += 3) {
-            if (!face(&corners[i])) return false;
-        }
-        while (used_ < slots_.size()) {
-            if (!isNumber(newSlot())) return false;
-        }
-        return true;
+        return readRuns(interiorSlot, uint32_t(slots.size())) && orderSlots(slots) && faces(slots, corners);
     }
 
     bool isFinished() const {
@@ -97,103 +151,66 @@ public:
     }
 
 private:
-    struct Edge {
-        uint32_t a, b;
-    };
-    static constexpr uint32_t kDamaged = 0xffffffffu;
-    static bool isNumber(uint32_t slot) { return slot != kDamaged; }
-
-    bool readRuns(uint32_t first) {
+    bool readRuns(uint32_t first, uint32_t slotCount) {
         if (table_ == c_.runTable.size()) return false;
         const uint32_t count = c_.runTable[table_++];
         if (count == kStray || c_.runTable.size() - table_ < count * sizeof(Slot)) return false;
-        std::fill(std::begin(cursor_), std::end(cursor_), 0u);
-        std::fill(std::begin(end_), std::end(end_), 0u);
-        uint64_t end = first;
+        std::fill(std::begin(cursor_), std::end(cursor_), slotCount); // no slot: damaged if it is asked for
+        uint64_t start = first;
         for (uint32_t run = 0; run < count; ++run) {
             Slot length = 0;
             std::memcpy(&length, c_.runTable.data() + table_, sizeof length);
             table_ += sizeof length;
-            cursor_[run] = uint32_t(end);
-            end += length;
-            if (end > slots_.size()) return false;
-            end_[run] = uint32_t(end);
+            cursor_[run] = uint32_t(start);
+            start += length;
+            if (start > slotCount) return false;
         }
         return true;
     }
 
-    uint32_t newSlot() {
-        if (used_ == slots_.size()) return kDamaged;
-        const uint8_t run = c_.runs[symbol_++];
-        uint32_t slot = 0;
-        if (run != kStray) {
-            if (cursor_[run] == end_[run]) return kDamaged;
-            slot = cursor_[run]++;
-        } else {
-            if (stray_ == c_.strays.count) return kDamaged;
-            slot = c_.strays[stray_++];
-            if (slot >= slots_.size()) return kDamaged;
+    /// The patch's slots in order of first use. A run may overrun into the next: what is decoded then is wrong, and
+    /// `openAll` will say so, but every slot is one of the patch.
+    bool orderSlots(std::span<uint32_t> slots) {
+        size_t strays = stray_;
+        uint32_t largest = 0;
+        for (uint32_t& out : slots) {
+            const uint8_t run = c_.runs[symbol_++];
+            const bool isStray = run == kStray;
+            const uint32_t stray = c_.strays[std::min(strays, c_.strays.count)], inRun = cursor_[run]++;
+            const uint32_t slot = isStray ? stray : inRun;
+            strays += isStray;
+            largest = std::max(largest, slot);
+            out = slot;
         }
-        slots_[used_++] = slot;
-        return slot;
+        stray_ = strays;
+        return strays <= c_.strays.count && (slots.empty() || largest < slots.size());
     }
 
-    uint32_t farSlot() {
-        if (far_ == c_.far.count) return kDamaged;
-        lastFar_ += unzigzag(c_.far[far_++]);
-        if (lastFar_ >= used_) return kDamaged;
-        return slots_[lastFar_];
-    }
-
-    uint32_t vertex(uint32_t code) {
-        if (code - 1 < 14) return vertices_[(vertexCount_ - code) % kHistory];
-        const uint32_t slot = code == 0 ? newSlot() : farSlot();
-        vertices_[vertexCount_++ % kHistory] = slot;
-        return slot;
-    }
-
-    void meet(uint32_t a, uint32_t b) { edges_[edgeCount_++ % kHistory] = {a, b}; }
-
-    bool face(Slot* out) {
-        const uint8_t code = c_.codes[face_];
-        uint32_t a = 0, b = 0, c = 0;
-        if (code < 0xf0) {
-            const Edge shared = edges_[(edgeCount_ - 1 - (code >> 4)) % kHistory];
-            a = shared.a;
-            b = shared.b;
-            c = vertex(code & 15);
-        } else {
-            if (miss_ == c_.misses.size()) return false;
-            const uint8_t pair = c_.misses[miss_++];
-            a = vertex(pair >> 4);
-            b = vertex(pair & 15);
-            c = vertex(code & 15);
-            meet(b, a);
-            if (!isNumber(a) || !isNumber(b)) return false;
+    bool faces(std::span<const uint32_t> slots, std::span<Slot> corners) {
+        const size_t missesLeft = c_.misses.size() - miss_, farLeft = c_.far.count - far_, count = corners.size() / 3;
+        FaceLoop<Slot> loop{slots.data(), c_.misses.data() + miss_, c_.far.bytes + far_, c_.far.count};
+        const uint8_t* const firstMiss = loop.misses;
+        const uint8_t* codes = c_.codes.data() + face_;
+        Slot* out = corners.data();
+        for (size_t i = 0; i < count; ++i, out += 3) {
+            const glm::uvec3 f = loop.face(codes[i]);
+            const uint32_t low = std::min(f.x, std::min(f.y, f.z));
+            if (c_.rotations.empty())
+                store(f, low == f.y, low == f.z, out);
+            else
+                store(f, c_.rotations[face_ + i] == 1, c_.rotations[face_ + i] == 2, out);
+            if (loop.used > slots.size() || loop.far > farLeft || size_t(loop.misses - firstMiss) > missesLeft)
+                return false;
         }
-        if (!isNumber(c)) return false;
-        meet(c, b);
-        meet(a, c);
-        store(a, b, c, out);
-        ++face_;
-        return true;
-    }
-
-    void store(uint32_t a, uint32_t b, uint32_t c, Slot* out) const {
-        const uint32_t low = std::min(a, std::min(b, c));
-        uint32_t turn = low == a ? 0 : low == b ? 1 : 2;
-        if (!c_.rotations.empty()) turn = c_.rotations[face_] % 3;
-        const uint32_t corners[5] = {a, b, c, a, b};
-        for (uint32_t k = 0; k < 3; ++k) out[k] = Slot(corners[turn + k]);
+        face_ += count;
+        miss_ += size_t(loop.misses - firstMiss);
+        far_ += loop.far;
+        return loop.isDamaged == 0;
     }
 
     const FaceCodes<Slot>& c_;
     size_t face_ = 0, miss_ = 0, far_ = 0, stray_ = 0, symbol_ = 0, table_ = 0;
-    std::span<uint32_t> slots_; // of this patch
-    uint32_t used_ = 0, lastFar_ = 0, edgeCount_ = 0, vertexCount_ = 0;
-    uint32_t cursor_[256], end_[256];
-    Edge edges_[kHistory];
-    uint32_t vertices_[kHistory];
+    uint32_t cursor_[256];
 };
 
 constexpr bool isWidth(const PatchRecord& patch, size_t slotBytes) {
@@ -212,7 +229,7 @@ bool decodeFaces(const Decoding& d, std::span<const std::byte> stored, std::span
     FacesHeader header;
     if (!readHeader(stored, header) || corners.size() % 3 != 0) return false;
     const uint64_t size = faceWorkBytes<Slot>(header, corners.size() / 3, slots.size());
-    if (size > d.work.size() || !d.inflater.inflate(stored, d.work.first(size))) return false;
+    if (size + kSlack > d.work.size() || !d.inflater.inflate(stored, d.work.first(size))) return false;
     const FaceCodes<Slot> codes = split<Slot>(d.work, header, corners.size() / 3, slots.size());
     FaceDecoder<Slot> decoder(codes);
     for (uint32_t p = 0; p < d.view.patchCount(); ++p) {
@@ -266,64 +283,44 @@ template bool decodeParents(const Decoding&, std::span<const std::byte>, std::sp
 
 namespace {
 
-/// Rows of one patch's slots, group by group.
+/// The rows of a patch's slots.
+void listRows(const AssetView& view, uint32_t patch, uint32_t* rows) {
+    const auto add = [&](VertexRange range) {
+        for (uint32_t i = 0; i < range.count; ++i) *rows++ = range.first + i;
+    };
+    for (const uint32_t domain : view.domainsOf(patch)) add(view.domainRange(domain));
+    add(view.interiorRange(patch));
+}
+
 template <typename Slot>
-class PatchReferences {
-public:
-    PatchReferences(const AssetView& view, uint32_t patch, const Slot* parents, std::span<uint32_t> references)
-        : view_(view), patch_(patch), domains_(view.domainsOf(patch)), firstSlots_(view.domainSlotsOf(patch)),
-          parents_(parents), references_(references) {}
-
-    bool find() {
-        for (uint32_t i = 0; i < domains_.size(); ++i) {
-            // All patches of a domain agree on it: one is enough.
-            if (view_.patchesOf(domains_[i]).front() != patch_) continue;
-            if (!group(firstSlots_[i], view_.domainRange(domains_[i]))) return false;
-        }
-        const VertexRange interior = view_.interiorRange(patch_);
-        return group(view_.patches[patch_].slotCount - interior.count, interior);
+bool findReferencesOf(const AssetView& view, uint32_t patch, const Slot* parents, uint32_t* rows,
+                      std::span<uint32_t> references) {
+    const uint32_t slotCount = view.patches[patch].slotCount;
+    listRows(view, patch, rows);
+    bool isDamaged = false;
+    for (uint32_t slot = 0; slot < slotCount; ++slot) {
+        const uint32_t row = rows[slot], parent = parents[slot];
+        const bool isRoot = parent == slot;
+        const uint32_t before = row - (row > 0), up = rows[parent < slotCount ? parent : 0];
+        const uint32_t reference = isRoot ? before : up;
+        isDamaged |= reference >= row + isRoot || parent >= slotCount;
+        references[row] = reference;
     }
-
-private:
-    bool group(uint32_t firstSlot, VertexRange range) {
-        for (uint32_t i = 0; i < range.count; ++i) {
-            const uint32_t row = range.first + i, slot = firstSlot + i, parent = parents_[slot];
-            if (parent == slot) {
-                references_[row] = row > 0 ? row - 1 : 0;
-                continue;
-            }
-            if (parent > slot) return false;
-            const uint32_t reference = parent >= firstSlot ? row - (slot - parent) : rowOf(parent);
-            if (reference >= row) return false;
-            references_[row] = reference;
-        }
-        return true;
-    }
-
-    /// Of a slot in a domain; only lower slots are asked for.
-    uint32_t rowOf(uint32_t slot) const {
-        const auto* after = std::upper_bound(firstSlots_.data(), firstSlots_.data() + firstSlots_.size(), slot);
-        const auto i = size_t(after - firstSlots_.data()) - 1;
-        return view_.domainRange(domains_[i]).first + slot - firstSlots_[i];
-    }
-
-    const AssetView& view_;
-    uint32_t patch_;
-    std::span<const uint32_t> domains_, firstSlots_;
-    const Slot* parents_;
-    std::span<uint32_t> references_;
-};
+    return !isDamaged;
+}
 
 } // namespace
 
 bool findReferences(const Decoding& d, std::span<const uint16_t> narrow, std::span<const uint32_t> wide) {
+    auto* rows = reinterpret_cast<uint32_t*>(d.work.data());
     for (uint32_t p = 0; p < d.view.patchCount(); ++p) {
         const PatchRecord& patch = d.view.patches[p];
         const uint64_t end = uint64_t(patch.firstParent) + patch.slotCount;
-        if (end > (isWide(patch) ? wide.size() : narrow.size())) return false;
+        if (end > (isWide(patch) ? wide.size() : narrow.size()) || patch.slotCount * sizeof(uint32_t) > d.work.size())
+            return false;
         const bool found = isWide(patch)
-                               ? PatchReferences(d.view, p, wide.data() + patch.firstParent, d.references).find()
-                               : PatchReferences(d.view, p, narrow.data() + patch.firstParent, d.references).find();
+                               ? findReferencesOf(d.view, p, wide.data() + patch.firstParent, rows, d.references)
+                               : findReferencesOf(d.view, p, narrow.data() + patch.firstParent, rows, d.references);
         if (!found) return false;
     }
     return true;

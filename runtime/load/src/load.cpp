@@ -116,10 +116,13 @@ Status measureStreams(Directory& d) {
     d.pageBytes = alignUp(raw);
     if (alignUp(stored) != d.page->storedBytes) return corrupt("the page does not end behind its last stream");
     if (d.pageBytes != d.page->rawBytes) return corrupt("the page has another size than its streams");
+    // A patch of narrow slots has at most 65,536 of them.
+    d.workBytes = sizeof(uint32_t) * std::max<uint64_t>(std::min<uint64_t>(d.narrowSlots, 65536), d.wideSlots);
     for (size_t i = 0; i < d.streams.size(); ++i) {
         d.workBytes = std::max(d.workBytes, workBytes(d, d.streams[i]));
         if (d.workBytes > kMostBytes) return corrupt("stream that unpacks to more than 1 TiB", i);
     }
+    d.workBytes += kSlack;
     return {};
 }
 
