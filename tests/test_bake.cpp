@@ -3,6 +3,7 @@
 #include <xgc/asset.h>
 #include <xgc/bake/bake.h>
 #include <xgc/bake/import.h>
+#include <xgc/bake/snap.h>
 #include <xgc/bake/verify.h>
 
 #include <doctest/doctest.h>
@@ -97,6 +98,60 @@ TEST_CASE("a bake of a closed mesh keeps every promise, whatever gives the parts
         CHECK(verified.sourceMismatches == 0);
         CHECK(verified.ok());
     }
+}
+
+TEST_CASE("snapped positions lie on a grid of a power of two, at most so far from the input as E of level 0 says") {
+    Model model = test::sphere(20);
+    const float step = snapStep(model, 10);
+    CHECK(step == 1.0f / 256); // 2 / 1023, rounded up to a power of two
+    CHECK(snapStep(model, 11) == 1.0f / 512);
+    const std::vector<glm::vec3> before = model.positions;
+    const float distance = snapPositions(model, step);
+    for (size_t i = 0; i < before.size(); ++i) {
+        CHECK(glm::distance(glm::dvec3(before[i]), glm::dvec3(model.positions[i])) <= distance);
+        for (int k = 0; k < 3; ++k) CHECK(model.positions[i][k] * 256 == std::floor(model.positions[i][k] * 256));
+    }
+    CHECK(distance <= 0.8661 * step + 1e-6);
+    const std::vector<glm::vec3> once = model.positions;
+    CHECK(snapPositions(model, step) < 1e-30f);
+    CHECK(model.positions == once);
+}
+
+TEST_CASE("a compressed bake of snapped positions keeps every promise and the same bytes at any number of threads") {
+    const Folder folder;
+    writeOff(twoSpheres(), folder.path / "in.off");
+    BakeOptions options = optionsFor(folder, "a.xgc");
+    options.parts = PartSource::none;
+    options.compress = true;
+    options.positionBits = 12;
+    options.rounding.normalBits = 10;
+    BakeReport report;
+    const bake::Status status = bake::bake(options, report);
+    REQUIRE_MESSAGE(status.ok(), status.message);
+    CHECK(report.fileBytes < report.imageBytes);
+    AlignedBytes image;
+    REQUIRE(readImage(options.output, image).ok());
+    CHECK(image.size == report.imageBytes);
+    AssetView asset;
+    REQUIRE(openAll(image.span(), asset).ok());
+    CHECK(asset.record->positionStep == report.positionStep);
+    for (uint32_t p = 0; p < asset.patchCount(); ++p) CHECK(asset.error(p, 0) >= report.snapDistance);
+    Model model;
+    REQUIRE(importModel(options.input, model).ok());
+    snapPositions(model, report.positionStep);
+    VerifyReport verified;
+    VerifyOptions verifyOptions;
+    verifyOptions.states = 20;
+    verifyOptions.errorStates = 8;
+    verifyOptions.errorSamples = 2000;
+    verifySource(asset, test::welded(model), verified);
+    verifyAsset(asset, verifyOptions, verified);
+    CHECK(verified.sourceMismatches == 0);
+    CHECK(verified.ok());
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    options.output = folder.path / "b.xgc";
+    REQUIRE(bake::bake(options, report).ok());
+    CHECK(contents(folder.path / "a.xgc") == contents(folder.path / "b.xgc"));
 }
 
 TEST_CASE("the same input gives the same bytes at any number of threads") {

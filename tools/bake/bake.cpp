@@ -6,12 +6,15 @@
 #include <xgc/bake/error.h>
 #include <xgc/bake/import.h>
 #include <xgc/bake/normals.h>
+#include <xgc/bake/snap.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <xxhash.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace xgc::bake {
 namespace {
@@ -37,6 +40,8 @@ Status cancelledStatus(const BakeOptions& options) {
 
 Status prepareMesh(const BakeOptions& options, Work& work, BakeReport& report) {
     if (options.normals == NormalSource::smooth) work.model.attributes.normals.clear();
+    if (options.positionBits > 0) report.positionStep = snapStep(work.model, options.positionBits);
+    if (report.positionStep > 0) report.snapDistance = snapPositions(work.model, report.positionStep);
     if (Status s = weld(work.model, options.weld, work.mesh, report.weld); !s.ok()) return s;
     work.model = Model{};
     work.topology = buildTopology(work.mesh);
@@ -85,12 +90,23 @@ Status buildHierarchy(const BakeOptions& options, Work& work, BakeReport& report
     return checkHierarchy(work.mesh, work.hierarchy);
 }
 
+/// What is measured is the way from the snapped mesh: that from the input is longer by no more than the snapping.
+void addSnapDistance(const BakeReport& report, PatchErrors& errors) {
+    if (report.positionStep == 0) return;
+    errors.positionStep = report.positionStep;
+    for (float& e : errors.values) {
+        const double sum = double(e) + double(report.snapDistance);
+        e = float(sum) < sum ? std::nextafter(float(sum), std::numeric_limits<float>::infinity()) : float(sum);
+    }
+}
+
 Status measure(const BakeOptions& options, Work& work, BakeReport& report) {
     work.errors = measureErrors(work.mesh, work.topology, work.hierarchy, [&](double fraction) {
         if (options.progress) options.progress("measure", fraction);
         return !isCancelled(options);
     });
     if (isCancelled(options)) return cancelledStatus(options);
+    addSnapDistance(report, work.errors);
     const uint32_t levelCount = work.hierarchy.levelCount;
     report.levelErrors.assign(levelCount, 0.0f);
     for (size_t i = 0; i < work.errors.values.size(); ++i) {
@@ -136,6 +152,7 @@ std::string provenance(const BakeOptions& options) {
         for (const PartImportance& i : options.importance) json["importance"][i.part] = fmt::format("{}", i.factor);
         if (options.importanceChannel >= 0) json["importanceChannel"] = options.importanceChannel;
     }
+    if (options.positionBits > 0) json["positionBits"] = options.positionBits;
     if (options.rounding.normalBits < 16) json["normalBits"] = options.rounding.normalBits;
     if (options.rounding.uvBits > 0) json["uvBits"] = options.rounding.uvBits;
     return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);

@@ -141,6 +141,8 @@ void addAsset(Layout& l, bool inputIsClosed) {
     }
     r.flags = (l.errors.estimate ? uint32_t(kErrorIsEstimate) : 0u) | (inputIsClosed ? uint32_t(kInputIsClosed) : 0u);
 
+    r.positionStep = l.errors.positionStep;
+
     std::vector<uint8_t> seen(h.positions.size(), 0);
     std::vector<glm::vec3> points;
     for (const uint32_t wedge : l.rows.wedgeOf) {

@@ -71,6 +71,8 @@ std::string reportJson(const BakeOptions& options, const BakeReport& report) {
     json["patches"] = report.patches;
     json["fileBytes"] = report.fileBytes;
     json["imageBytes"] = report.imageBytes;
+    json["positionStep"] = report.positionStep;
+    json["snapDistance"] = report.snapDistance;
     json["sections"] = sizesJson(report.sizes.sections, false);
     json["streams"] = sizesJson(report.sizes.streams, true);
     json["levels"] = Json::array();

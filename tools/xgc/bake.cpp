@@ -225,6 +225,11 @@ void addBake(CLI::App& app, Run& run) {
         ->capture_default_str();
     bake->add_flag("--compress", arguments->options.compress,
                    "Compress the file: a third of the size, decoded by xgc::load; without it, it can be mapped");
+    bake->add_option(
+            "--position-bits", arguments->options.positionBits,
+            "Snap positions to a grid of BITS along the longest side before building; 0: keep them as they are")
+        ->check(CLI::Range(0u, 24u))
+        ->capture_default_str();
     bake->add_option("--normal-bits", arguments->options.rounding.normalBits, "Round octahedral normals to these bits")
         ->check(CLI::Range(8u, 16u))
         ->capture_default_str();

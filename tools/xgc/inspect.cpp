@@ -14,6 +14,49 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+<<<<<<< HEAD
+=======
+const char* streamName(format::StreamKind kind) {
+    using format::StreamKind;
+    switch (kind) {
+    case StreamKind::position:
+        return "position";
+    case StreamKind::normal:
+        return "normal";
+    case StreamKind::tangent:
+        return "tangent";
+    case StreamKind::uv:
+        return "uv";
+    case StreamKind::color:
+        return "color";
+    case StreamKind::joints:
+        return "joints";
+    case StreamKind::weights:
+        return "weights";
+    case StreamKind::collapseLevel:
+        return "collapseLevel";
+    case StreamKind::birthLevel:
+        return "birthLevel";
+    case StreamKind::parentNarrow:
+        return "parentNarrow";
+    case StreamKind::parentWide:
+        return "parentWide";
+    case StreamKind::cornerNarrow:
+        return "cornerNarrow";
+    case StreamKind::cornerWide:
+        return "cornerWide";
+    case StreamKind::death:
+        return "death";
+    }
+    return "unknown";
+}
+
+const char* codecName(format::Codec codec) {
+    constexpr const char* kNames[] = {"none", "zstd", "meshopt", "rows", "faces", "parents"};
+    return uint32_t(codec) < std::size(kNames) ? kNames[uint32_t(codec)] : "unknown";
+}
+
+>>>>>>> f395c34 (bake: snap positions to a grid; load: specify the codecs, fuzz them, use them from a consumer; inspect: sizes by stream)
 /// Bytes of the installed image: the tables and the decoded pages.
 uint64_t memoryBytes(const AssetView& asset) {
     uint64_t bytes = reinterpret_cast<const format::FileHeader*>(asset.bytes.data())->tableBytes;
@@ -57,7 +100,8 @@ Json partsJson(const AssetView& asset) {
     return parts;
 }
 
-Json inspectJson(const AssetView& asset) {
+Json inspectJson(const OpenAsset& opened) {
+    const AssetView& asset = opened.view;
     const format::AssetRecord& record = *asset.record;
     Json json;
     json["faces"] = record.faceCount;
@@ -78,30 +122,52 @@ Json inspectJson(const AssetView& asset) {
     for (const format::LevelRecord& level : asset.levels) {
         json["levels"].push_back({{"faces", level.faceCount}, {"error", level.maxError}});
     }
-    json["bytes"] = {{"file", asset.bytes.size()},
+    json["bytes"] = {{"file", opened.fileBytes},
                      {"memory", memoryBytes(asset)},
                      {"geometry", geometryBytes(asset)},
                      {"base", baseBytes(asset)}};
     json["streams"] = Json::array();
+<<<<<<< HEAD
     for (const format::StreamRecord& s : asset.streams) {
         json["streams"].push_back(
             {{"name", bake::streamName(s.kind)}, {"set", s.set}, {"count", s.count}, {"bytes", s.rawBytes}});
+=======
+    for (const format::StreamRecord& s : opened.streams) {
+        json["streams"].push_back({{"name", streamName(s.kind)},
+                                   {"set", s.set},
+                                   {"count", s.count},
+                                   {"bytes", s.rawBytes},
+                                   {"codec", codecName(s.codec)},
+                                   {"storedBytes", s.storedBytes}});
+>>>>>>> f395c34 (bake: snap positions to a grid; load: specify the codecs, fuzz them, use them from a consumer; inspect: sizes by stream)
     }
+    json["positionStep"] = record.positionStep;
     json["partList"] = partsJson(asset);
     json["provenance"] = Json::parse(asset.provenance, nullptr, false);
     if (json["provenance"].is_discarded()) json["provenance"] = nullptr;
     return json;
 }
 
-void printText(const std::string& file, const AssetView& asset) {
+void printStreams(const OpenAsset& opened, double faces) {
+    fmt::print("{:>16} {:>8} {:>18} {:>18}\n", "stream", "codec", "stored bytes/face", "in memory");
+    for (const format::StreamRecord& s : opened.streams) {
+        fmt::print("{:>14} {} {:>8} {:>18.2f} {:>18.2f}\n", streamName(s.kind), s.set, codecName(s.codec),
+                   double(s.storedBytes) / faces, double(s.rawBytes) / faces);
+    }
+}
+
+void printText(const std::string& file, const OpenAsset& opened) {
+    const AssetView& asset = opened.view;
     const format::AssetRecord& record = *asset.record;
     const double faces = std::max(1u, record.faceCount);
     fmt::print("{}: {} faces, {} vertices ({} positions, {} made), {} parts, {} patches, {}\n", file, record.faceCount,
                record.baseVertexCount, record.positionCount, record.vertexCount - record.baseVertexCount,
                record.partCount, record.patchCount, record.flags & format::kInputIsClosed ? "closed" : "open");
     fmt::print("bytes a face: file {:.1f}, memory {:.1f}, positions and topology {:.1f}, plain mesh {:.1f}\n",
-               double(asset.bytes.size()) / faces, double(memoryBytes(asset)) / faces,
+               double(opened.fileBytes) / faces, double(memoryBytes(asset)) / faces,
                double(geometryBytes(asset)) / faces, double(baseBytes(asset)) / faces);
+    if (record.positionStep > 0) fmt::print("positions on a grid of {:.4g}\n", record.positionStep);
+    printStreams(opened, faces);
     fmt::print("{:>6} {:>12} {:>8} {:>12}\n", "level", "faces", "%", "error");
     for (uint32_t l = 0; l < asset.levelCount(); ++l) {
         fmt::print("{:>6} {:>12} {:>8.2f} {:>12.4g}\n", l, asset.levels[l].faceCount,
@@ -120,9 +186,9 @@ bake::Status runInspect(const std::string& file, bool json) {
     OpenAsset asset;
     if (bake::Status s = openAsset(file, asset); !s.ok()) return s;
     if (json)
-        fmt::print("{}\n", inspectJson(asset.view).dump(2, ' ', false, Json::error_handler_t::replace));
+        fmt::print("{}\n", inspectJson(asset).dump(2, ' ', false, Json::error_handler_t::replace));
     else
-        printText(file, asset.view);
+        printText(file, asset);
     return {};
 }
 

@@ -4,12 +4,14 @@
 
 #include <xgc/bake/import.h>
 #include <xgc/bake/mesh.h>
+#include <xgc/bake/snap.h>
 #include <xgc/bake/verify.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <tbb/global_control.h>
 
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -64,6 +66,8 @@ void printText(const std::string& file, const bake::VerifyReport& r) {
 bake::Status compareSource(const VerifyArguments& arguments, const AssetView& asset, bake::VerifyReport& report) {
     bake::Model model;
     if (bake::Status s = bake::importModel(arguments.source, model); !s.ok()) return s;
+    const float step = asset.record->positionStep;
+    if (step > 0 && std::isfinite(step)) bake::snapPositions(model, step);
     bake::Mesh mesh;
     bake::WeldReport weld;
     if (bake::Status s = bake::weld(model, {.tolerance = arguments.weldTolerance}, mesh, weld); !s.ok()) return s;

@@ -110,7 +110,8 @@ struct AssetRecord {
     float boundsMax[3];
     float sphereCenter[3];
     float sphereRadius;
-    uint32_t reserved[6]; ///< zero; later the origin (3) and step (1) of the grid of quantised positions
+    float positionStep; ///< positions of level 0 are the input's, snapped to multiples of it; 0: as they were
+    uint32_t reserved[5];
 };
 static_assert(sizeof(AssetRecord) == 128);
 

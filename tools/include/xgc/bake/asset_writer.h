@@ -11,6 +11,9 @@ namespace xgc::bake {
 struct PatchErrors {
     std::vector<float> values;
     bool estimate = false; ///< the values are guesses, not bounds: the file says so
+    /// Positions were snapped to its multiples before the mesh was built, and `values` include how far; 0: they were
+    /// not.
+    float positionStep = 0;
 };
 
 /// Lays an asset out as runtime/FORMAT.md says: the bytes of an `.xgc` file, uncompressed. The same input gives

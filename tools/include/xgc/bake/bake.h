@@ -50,6 +50,7 @@ struct BakeOptions {
     /// Channel 0..3 of the first vertex colours in which artists paint importance: c counts 1 / (1 - c) times, 1 locks.
     /// -1: none.
     int importanceChannel = -1;
+    uint32_t positionBits = 0; ///< snap positions to a grid of so many bits along the longest side; 0: keep them
     RoundingOptions rounding;
     bool compress = false; ///< false: the file can be mapped and opened where it lies
     CompressOptions compression;
@@ -88,6 +89,8 @@ struct BakeReport {
     uint32_t parts = 0;
     uint32_t patches = 0;
     uint64_t fileBytes = 0;
+    float positionStep = 0;  ///< of the grid, mesh units; 0: none
+    float snapDistance = 0;  ///< largest way that a position moved to the grid, mesh units
     uint64_t imageBytes = 0; ///< of the file before it was compressed
     AssetSizes sizes;        ///< what the file's bytes are
     std::vector<Verdict> verdicts;
