@@ -14,49 +14,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-<<<<<<< HEAD
-=======
-const char* streamName(format::StreamKind kind) {
-    using format::StreamKind;
-    switch (kind) {
-    case StreamKind::position:
-        return "position";
-    case StreamKind::normal:
-        return "normal";
-    case StreamKind::tangent:
-        return "tangent";
-    case StreamKind::uv:
-        return "uv";
-    case StreamKind::color:
-        return "color";
-    case StreamKind::joints:
-        return "joints";
-    case StreamKind::weights:
-        return "weights";
-    case StreamKind::collapseLevel:
-        return "collapseLevel";
-    case StreamKind::birthLevel:
-        return "birthLevel";
-    case StreamKind::parentNarrow:
-        return "parentNarrow";
-    case StreamKind::parentWide:
-        return "parentWide";
-    case StreamKind::cornerNarrow:
-        return "cornerNarrow";
-    case StreamKind::cornerWide:
-        return "cornerWide";
-    case StreamKind::death:
-        return "death";
-    }
-    return "unknown";
-}
-
 const char* codecName(format::Codec codec) {
     constexpr const char* kNames[] = {"none", "zstd", "meshopt", "rows", "faces", "parents"};
     return uint32_t(codec) < std::size(kNames) ? kNames[uint32_t(codec)] : "unknown";
 }
 
->>>>>>> f395c34 (bake: snap positions to a grid; load: specify the codecs, fuzz them, use them from a consumer; inspect: sizes by stream)
 /// Bytes of the installed image: the tables and the decoded pages.
 uint64_t memoryBytes(const AssetView& asset) {
     uint64_t bytes = reinterpret_cast<const format::FileHeader*>(asset.bytes.data())->tableBytes;
@@ -127,19 +89,13 @@ Json inspectJson(const OpenAsset& opened) {
                      {"geometry", geometryBytes(asset)},
                      {"base", baseBytes(asset)}};
     json["streams"] = Json::array();
-<<<<<<< HEAD
-    for (const format::StreamRecord& s : asset.streams) {
-        json["streams"].push_back(
-            {{"name", bake::streamName(s.kind)}, {"set", s.set}, {"count", s.count}, {"bytes", s.rawBytes}});
-=======
     for (const format::StreamRecord& s : opened.streams) {
-        json["streams"].push_back({{"name", streamName(s.kind)},
+        json["streams"].push_back({{"name", bake::streamName(s.kind)},
                                    {"set", s.set},
                                    {"count", s.count},
                                    {"bytes", s.rawBytes},
                                    {"codec", codecName(s.codec)},
                                    {"storedBytes", s.storedBytes}});
->>>>>>> f395c34 (bake: snap positions to a grid; load: specify the codecs, fuzz them, use them from a consumer; inspect: sizes by stream)
     }
     json["positionStep"] = record.positionStep;
     json["partList"] = partsJson(asset);
@@ -151,7 +107,7 @@ Json inspectJson(const OpenAsset& opened) {
 void printStreams(const OpenAsset& opened, double faces) {
     fmt::print("{:>16} {:>8} {:>18} {:>18}\n", "stream", "codec", "stored bytes/face", "in memory");
     for (const format::StreamRecord& s : opened.streams) {
-        fmt::print("{:>14} {} {:>8} {:>18.2f} {:>18.2f}\n", streamName(s.kind), s.set, codecName(s.codec),
+        fmt::print("{:>14} {} {:>8} {:>18.2f} {:>18.2f}\n", bake::streamName(s.kind), s.set, codecName(s.codec),
                    double(s.storedBytes) / faces, double(s.rawBytes) / faces);
     }
 }
