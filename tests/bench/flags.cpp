@@ -27,7 +27,8 @@ void printUsage(const char* program, const std::vector<std::string>& sections) {
                        "  --csv FOLDER      write results there, with --commit TEXT and --machine TEXT\n"
                        "  --outside COMMAND compare with other simplifiers too: given a PLY file, a count of faces\n"
                        "                    and a folder, it writes FOLDER/PROGRAM.ply for each of them\n"
-                       "  --beside COMMAND  time it in turn with the builder: given a PLY file, it prints seconds\n"
+                       "  --beside COMMAND  time it in turn with the builder: given a PLY file, it prints the\n"
+                       "                    seconds that it took on the clock and of the processor\n"
                        "  --gltfpack FILE   the program\n");
 }
 

@@ -18,7 +18,7 @@ struct Flags {
     std::filesystem::path data;        ///< the real meshes; empty where absent
     std::filesystem::path csv;         ///< folder for results; empty: none
     std::string outside;               ///< command that runs other simplifiers, see Peers; empty: none
-    std::string beside;                ///< command timed in turn with the builder, given a PLY file; it prints seconds
+    std::string beside;                ///< command timed in turn with the builder, see hierarchy_speed.cpp
     std::filesystem::path gltfpack;    ///< program; empty where absent
     std::string commit = "unknown";
     std::string machine = "unknown";

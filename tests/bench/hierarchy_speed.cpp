@@ -8,17 +8,26 @@
 #include <tbb/info.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <functional>
-#include <optional>
 
 namespace xgc::bench {
 namespace {
 
-double secondsOf(const std::function<void()>& work) {
+struct Seconds {
+    double wall = 0;
+    double cpu = 0; ///< of all threads: what a loaded machine changes least
+};
+
+Seconds secondsOf(const std::function<void()>& work) {
     const auto start = std::chrono::steady_clock::now();
+    const std::clock_t cpuStart = std::clock();
     work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const std::clock_t cpuEnd = std::clock();
+    return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+            double(cpuEnd - cpuStart) / CLOCKS_PER_SEC};
 }
 
 /// Levels by the packaged meshoptimizer: each simplified to half of the one before, down to 128 triangles.
@@ -36,21 +45,21 @@ void simplifyByHalves(const Surface& surface) {
     }
 }
 
-/// Seconds that a command prints, given a file.
-std::optional<double> secondsBeside(const std::string& command, const std::filesystem::path& file) {
+/// The seconds on the clock and of the processor that a command prints, given a file.
+Seconds secondsBeside(const std::string& command, const std::filesystem::path& file) {
     FILE* out = popen(fmt::format("{} '{}'", command, file.string()).c_str(), "r");
-    double seconds = 0;
-    const bool good = out && std::fscanf(out, "%lf", &seconds) == 1;
+    Seconds s;
+    if (!out || std::fscanf(out, "%lf %lf", &s.wall, &s.cpu) != 2) s = {NAN, NAN};
     if (out) pclose(out);
-    return good ? std::optional(seconds) : std::nullopt;
+    return s;
 }
 
 /// What is timed, in turn with the others.
 struct Timed {
     std::string name;
-    std::function<double()> run;
+    std::function<Seconds()> run;
     uint32_t every = 1; ///< takes part in each run of this number
-    std::vector<double> seconds;
+    std::vector<double> wall, cpu;
 };
 
 std::vector<Timed> timedOn(const Flags& flags, const Subject& subject, const Surface& surface,
@@ -63,19 +72,24 @@ std::vector<Timed> timedOn(const Flags& flags, const Subject& subject, const Sur
         });
     };
     const auto threads = size_t(tbb::info::default_concurrency());
-    std::vector<Timed> timed{{"build, 1 thread", [=] { return onThreads(1, false); }, 1, {}},
-                             {"build and errors, 1 thread", [=] { return onThreads(1, true); }, 2, {}}};
+    std::vector<Timed> timed{{"build, 1 thread", [=] { return onThreads(1, false); }, 1, {}, {}},
+                             {"build and errors, 1 thread", [=] { return onThreads(1, true); }, 2, {}, {}}};
     if (threads > 1) {
-        timed.push_back({fmt::format("build, {} threads", threads), [=] { return onThreads(threads, false); }, 1, {}});
         timed.push_back(
-            {fmt::format("build and errors, {} threads", threads), [=] { return onThreads(threads, true); }, 2, {}});
+            {fmt::format("build, {} threads", threads), [=] { return onThreads(threads, false); }, 1, {}, {}});
+        timed.push_back({fmt::format("build and errors, {} threads", threads),
+                         [=] { return onThreads(threads, true); },
+                         2,
+                         {},
+                         {}});
     }
     timed.push_back({"meshopt_simplify 0.18 by halves",
                      [&surface] { return secondsOf([&] { simplifyByHalves(surface); }); },
                      1,
+                     {},
                      {}});
     if (!flags.beside.empty())
-        timed.push_back({"beside", [&flags, file] { return secondsBeside(flags.beside, file).value_or(0); }, 1, {}});
+        timed.push_back({"beside", [&flags, file] { return secondsBeside(flags.beside, file); }, 1, {}, {}});
     return timed;
 }
 
@@ -88,16 +102,20 @@ void measure(const Flags& flags, const Subject& subject, Csv& csv) {
     const uint32_t runs = faces > 3e6 ? 1 : flags.runs;
     for (uint32_t run = 0; run < runs; ++run) {
         for (Timed& t : timed) {
-            if (run % t.every == 0) t.seconds.push_back(t.run());
+            if (run % t.every != 0) continue;
+            const Seconds seconds = t.run();
+            t.wall.push_back(seconds.wall);
+            t.cpu.push_back(seconds.cpu);
         }
     }
     fmt::print("\n{}, {} faces, {} runs\n", subject.name, subject.mesh.faceCount(), runs);
+    fmt::print("  {:<34} {:>8} {:>8} {:>10} {:>10} {:>16}\n", "", "wall s", "CPU s", "Mfaces/s", "a CPU s",
+               "CPU of the first");
     for (const Timed& t : timed) {
-        const double seconds = median(t.seconds);
-        fmt::print("  {:<34} {:>8.3f} s {:>8.3f} Mfaces/s  {:>5.2f} of the first\n", t.name, seconds,
-                   faces / seconds * 1e-6, seconds / median(timed[0].seconds));
-        csv.row(fmt::format("{},{},{},{:.5f},{:.4f}", subject.name, subject.mesh.faceCount(), t.name, seconds,
-                            faces / seconds * 1e-6));
+        const double wall = median(t.wall), cpu = median(t.cpu);
+        fmt::print("  {:<34} {:>8.3f} {:>8.3f} {:>10.3f} {:>10.3f} {:>16.2f}\n", t.name, wall, cpu, faces / wall * 1e-6,
+                   faces / cpu * 1e-6, cpu / median(timed[0].cpu));
+        csv.row(fmt::format("{},{},\"{}\",{:.5f},{:.5f}", subject.name, subject.mesh.faceCount(), t.name, wall, cpu));
     }
     std::filesystem::remove(file);
 }
@@ -105,7 +123,7 @@ void measure(const Flags& flags, const Subject& subject, Csv& csv) {
 } // namespace
 
 int benchSpeed(const Flags& flags) {
-    Csv csv(flags, "speed", "model,faces,what,seconds,million_faces_a_second");
+    Csv csv(flags, "speed", "model,faces,what,wall_seconds,cpu_seconds");
     std::vector<Source> sources{{"terrain20k", {}, 20'000, true}, {"terrain1M", {}, 1'000'000, true}};
     if (!flags.data.empty()) sources.push_back({"psb113", flags.data / "psb/off/113.off", 0, true});
     for (Source& s : dragon()) sources.push_back({s.name, s.file, 0, true});
