@@ -1,6 +1,6 @@
-// Size and speed of compressed assets: bench_load [FILE.xgc]. Without a file, a torus of 1.5 M faces in patches of 2,048.
-// Decoding stands beside a copy of the decoded image and zstd's decoding of the same image compressed as a whole, in
-// turns, on one thread, by its processor time; the medians are printed.
+// Size and speed of compressed assets: bench_load [FILE.xgc]. Without a file, a torus of 1.5 M faces in patches of
+// 2,048. Decoding stands beside a copy of the decoded image and zstd's decoding of the same image compressed as a
+// whole, in turns, on one thread, by its processor time; the medians are printed.
 
 #include "meshes/patched_torus.h"
 
