@@ -274,3 +274,25 @@ TEST_CASE("patches are bounded, whole, and never cross parts or materials") {
     CHECK(std::is_sorted(split.patches.begin(), split.patches.end(),
                          [](const Patch& a, const Patch& b) { return a.material < b.material; }));
 }
+
+TEST_CASE("pages that share a spine, an edge of many faces, are split into patches like any mesh") {
+    constexpr uint32_t kPages = 7, kSide = 24;
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+    for (uint32_t page = 0; page < kPages; ++page) {
+        const bake::Model grid = test::grid(kSide); // x = 0 is the spine
+        const auto offset = uint32_t(positions.size());
+        for (const glm::vec3& p : grid.positions) positions.emplace_back(p.x, p.y, p.x * float(page));
+        for (const glm::uvec3& t : grid.triangles) triangles.push_back(t + offset);
+    }
+    const bake::Mesh mesh = test::welded(test::modelOf(positions, triangles));
+    const bake::Topology topology = bake::buildTopology(mesh);
+    const bake::PatchAssignment patches = bake::splitPatches(mesh, topology, bake::segmentNone(mesh), 100);
+    CHECK(patches.patches.size() > mesh.faceCount() / 100);
+    std::vector<uint32_t> faceCounts(patches.patches.size(), 0);
+    for (const uint32_t p : patches.facePatch) {
+        REQUIRE(p < faceCounts.size());
+        ++faceCounts[p];
+    }
+    CHECK(*std::min_element(faceCounts.begin(), faceCounts.end()) > 0);
+}

@@ -50,6 +50,17 @@ private:
                 queue_.push_back(g);
             }
         }
+        // Where more than two faces share an edge, some are no face's neighbour.
+        for (uint32_t f = 0; f < label_.size(); ++f) {
+            if (label_[f] == kNone) label_[f] = labelBeside(f);
+        }
+    }
+
+    uint32_t labelBeside(uint32_t f) const {
+        for (const uint32_t g : piece_.neighbours[f]) {
+            if (g != kNone && label_[g] != kNone) return label_[g];
+        }
+        return f > 0 ? label_[f - 1] : 0;
     }
 
     /// Moves the seeds to the faces farthest from their regions' rims: where walks from the rims end.
