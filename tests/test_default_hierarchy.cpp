@@ -253,6 +253,28 @@ TEST_CASE("locked vertices stay, important ones go later") {
     CHECK(important / importantCount > plain / plainCount + 2);
 }
 
+TEST_CASE("colours hold a surface where they bend, and cost nothing where they are linear") {
+    const auto facesAt = [](auto&& colorAt, double weight) {
+        Model model = test::grid(40);
+        for (const glm::vec3& p : model.positions) model.attributes.colors[0].push_back(glm::vec4(colorAt(p), 0, 0, 1));
+        const Mesh mesh = test::welded(model);
+        HierarchyOptions options;
+        options.colorWeight = weight;
+        options.maxLevels = 10;
+        std::vector<HierarchyLevelReport> report;
+        buildDefaultHierarchy(mesh, buildTopology(mesh), randomPatches(mesh, buildTopology(mesh), 3, 1), options,
+                              &report);
+        return report.back().faces;
+    };
+    const auto disc = [](const glm::vec3& p) {
+        return glm::distance(p, glm::vec3(0.5f, 0.5f, 0)) < 0.3f ? 1.0f : 0.0f;
+    };
+    const auto ramp = [](const glm::vec3& p) { return p.x; };
+    CHECK(facesAt(disc, 0) < 50);
+    CHECK(facesAt(ramp, 0.1) < 50);
+    CHECK(facesAt(disc, 0.1) > 100); // the rim is a curve
+}
+
 TEST_CASE("patches are bounded, whole, and never cross parts or materials") {
     Model model = test::grid(60);
     model.materials.resize(2);

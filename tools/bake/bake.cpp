@@ -146,6 +146,9 @@ std::string provenance(const BakeOptions& options) {
     } else {
         constexpr const char* kPlacements[] = {"subset", "optimal", "midpoint"};
         json["placement"] = kPlacements[int(options.hierarchy.placement)];
+        json["normalWeight"] = options.hierarchy.normalWeight;
+        json["uvWeight"] = options.hierarchy.uvWeight;
+        json["colorWeight"] = options.hierarchy.colorWeight;
         json["patchFaces"] = options.patchFaces;
         json["maxLevels"] = options.hierarchy.maxLevels;
         json["firstError"] = options.hierarchy.firstError;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace xgc::bake {
 
@@ -11,10 +12,11 @@ constexpr size_t kWidestDomain = 16;
 
 } // namespace
 
-BoundaryCollapser::BoundaryCollapser(SurfaceState& state, std::vector<InteriorCollapser>& interiors,
-                                     Placement placement)
-    : state_(state), interiors_(interiors), placement_(placement), stamp_(state.isBoundary.size(), 0),
-      target_(state.isBoundary.size(), kNone), blocked_(state.isBoundary.size()), check_(state) {
+BoundaryCollapser::BoundaryCollapser(SurfaceState& state, AttributeQuadrics& attributes,
+                                     std::vector<InteriorCollapser>& interiors, Placement placement)
+    : state_(state), attributes_(attributes), interiors_(interiors), placement_(placement),
+      stamp_(state.isBoundary.size(), 0), target_(state.isBoundary.size(), kNone), blocked_(state.isBoundary.size()),
+      check_(state) {
     for (uint32_t p = 0; p < state.isBoundary.size(); ++p) {
         if (state.isBoundary[p]) markDirty(p);
     }
@@ -62,17 +64,22 @@ void BoundaryCollapser::gatherStar(uint32_t vertex, std::vector<StarFace>& star)
 }
 
 void BoundaryCollapser::gatherEdges(const std::vector<StarFace>& star, std::vector<StarEdge>& edges) const {
-    thread_local std::vector<uint32_t> ends;
+    thread_local std::vector<StarEdge> ends;
     ends.clear();
     for (const StarFace& f : star) {
-        ends.push_back(f.next);
-        ends.push_back(f.previous);
+        ends.push_back({f.next, 1, f.wedge, f.nextWedge});
+        ends.push_back({f.previous, 1, f.wedge, f.previousWedge});
     }
-    std::sort(ends.begin(), ends.end());
+    std::sort(ends.begin(), ends.end(), [](const StarEdge& a, const StarEdge& b) {
+        return std::tie(a.to, a.wedge, a.toWedge) < std::tie(b.to, b.wedge, b.toWedge);
+    });
     edges.clear();
-    for (const uint32_t end : ends) {
-        if (edges.empty() || edges.back().to != end) edges.push_back({end, 0});
-        ++edges.back().faces;
+    for (const StarEdge& end : ends) {
+        if (edges.empty() || edges.back().to != end.to) {
+            edges.push_back(end);
+        } else {
+            ++edges.back().faces;
+        }
     }
 }
 
@@ -87,7 +94,7 @@ void BoundaryCollapser::evaluate(uint32_t vertex) {
     uint32_t bestTarget = kNone;
     for (const StarEdge& e : edges_) {
         if ((onBorder && e.faces == 2) || !state_.isBoundary[e.to]) continue;
-        const double cost = costOf(vertex, e.to);
+        const double cost = costOf(vertex, e);
         if (cost < blocked.cost || (cost == blocked.cost && e.to <= blocked.target)) continue;
         if (cost > best || (cost == best && e.to >= bestTarget)) continue;
         best = cost;
@@ -111,7 +118,8 @@ BoundaryCollapser::Outcome BoundaryCollapser::tryCollapse(uint32_t vertex, uint3
     bool meets = makesVertex(vertex, target);
     if (meets && !arePaired(target)) {
         meets = false;
-        if (subsetCost(vertex, target) > limit_) {
+        const auto [wedge, toWedge] = wedges_.pairs().front();
+        if (subsetCost(vertex, {target, 0, wedge, toWedge}) > limit_) {
             ++counts_.wedgeRefused;
             return Outcome::refused;
         }
@@ -131,13 +139,15 @@ BoundaryCollapser::Outcome BoundaryCollapser::tryCollapse(uint32_t vertex, uint3
     return outcome;
 }
 
-double BoundaryCollapser::costOf(uint32_t vertex, uint32_t target) const {
-    return makesVertex(vertex, target) ? meetingOf(state_, placement_, vertex, target).cost
-                                       : subsetCost(vertex, target);
+double BoundaryCollapser::costOf(uint32_t vertex, const StarEdge& edge) const {
+    if (!makesVertex(vertex, edge.to)) return subsetCost(vertex, edge);
+    return meetingOf(state_, attributes_, placement_, vertex, edge.to, {edge.wedge, edge.toWedge}).cost;
 }
 
-double BoundaryCollapser::subsetCost(uint32_t vertex, uint32_t target) const {
-    return state_.quadrics[vertex].cost(state_.point(target)) * state_.costScale[vertex];
+double BoundaryCollapser::subsetCost(uint32_t vertex, const StarEdge& edge) const {
+    const glm::dvec3 point = state_.point(edge.to);
+    const double more = attributes_.empty() ? 0 : attributes_.cost(edge.wedge, point, edge.toWedge);
+    return state_.quadrics[vertex].cost(point, more) * state_.costScale[vertex];
 }
 
 /// Both answer to the same patches, and neither must stay where it is.
@@ -158,7 +168,7 @@ bool BoundaryCollapser::arePaired(uint32_t target) const {
 /// Drafts the vertex at which both meet, and tries the triangles of both. Their steps are one: of the same domain.
 BoundaryCollapser::Outcome BoundaryCollapser::tryMeeting(uint32_t vertex, uint32_t target, uint32_t level) {
     const auto room = uint32_t(state_.rooms.size() - 1);
-    const Meeting meeting = meetingOf(state_, placement_, vertex, target);
+    const Meeting meeting = meetingOf(state_, attributes_, placement_, vertex, target, wedges_.pairs().front());
     const uint32_t firstWedge = state_.rooms[room].wedge;
     const uint32_t made = state_.draft(room, meeting.point, vertex, target, wedges_.pairs());
     vertexWedges_.setMade(wedges_, firstWedge, false);
@@ -307,6 +317,7 @@ void BoundaryCollapser::collapse(uint32_t vertex, uint32_t target, uint32_t leve
     lookAround(vertex);
     state_.domain[target] = state_.domains.unite(state_.domain[target], domain_);
     state_.quadrics[target].add(state_.quadrics[vertex]);
+    for (const auto& [from, to] : wedges_.pairs()) attributes_.add(to, from);
     retire(vertex, target, wedges_, level);
     around_.push_back(target);
     reevaluateAround();
@@ -319,6 +330,7 @@ void BoundaryCollapser::meet(uint32_t vertex, uint32_t target, uint32_t level) {
     const auto room = uint32_t(state_.rooms.size() - 1);
     const uint32_t made = state_.rooms[room].position;
     state_.keep(room, level, {});
+    for (const uint32_t wedge : state_.wedgesOf(made)) attributes_.make(wedge, state_.madeWedge(wedge));
     state_.makeBoundary(made);
     state_.domain[made] = domain_;
     retire(vertex, made, vertexWedges_, level);

@@ -8,7 +8,8 @@ namespace xgc::bake {
 /// step v -> u has the domain of v, and widens that of u by it: so domains grow along every chain.
 class BoundaryCollapser {
 public:
-    BoundaryCollapser(SurfaceState& state, std::vector<InteriorCollapser>& interiors, Placement placement);
+    BoundaryCollapser(SurfaceState& state, AttributeQuadrics& attributes, std::vector<InteriorCollapser>& interiors,
+                      Placement placement);
 
     void markDirty(uint32_t position) { dirty_.push_back(position); }
     /// Until nothing is left whose squared error is at most `limit`.
@@ -30,6 +31,7 @@ private:
     struct StarEdge {
         uint32_t to;
         uint32_t faces;
+        uint32_t wedge, toWedge; ///< of one of the faces
     };
 
     void gatherStar(uint32_t vertex, std::vector<StarFace>& star);
@@ -41,8 +43,8 @@ private:
     Outcome checkFaces(uint32_t vertex, uint32_t other, const StateCheck::Move& move, const WedgeMap& wedges);
     bool widen();
     void collapse(uint32_t vertex, uint32_t target, uint32_t level);
-    double costOf(uint32_t vertex, uint32_t target) const;
-    double subsetCost(uint32_t vertex, uint32_t target) const;
+    double costOf(uint32_t vertex, const StarEdge& edge) const;
+    double subsetCost(uint32_t vertex, const StarEdge& edge) const;
     bool makesVertex(uint32_t vertex, uint32_t target) const;
     bool arePaired(uint32_t target) const;
     Outcome tryMeeting(uint32_t vertex, uint32_t target, uint32_t level);
@@ -52,6 +54,7 @@ private:
     void reevaluateAround();
 
     SurfaceState& state_;
+    AttributeQuadrics& attributes_;
     std::vector<InteriorCollapser>& interiors_;
     const Placement placement_;
     double limit_ = 0;

@@ -39,15 +39,17 @@ class Builder {
 public:
     Builder(const Mesh& mesh, const Topology& topology, const PatchAssignment& assignment,
             const HierarchyOptions& options)
-        : assignment_(assignment), state_(mesh, topology, assignment) {
+        : assignment_(assignment), state_(mesh, topology, assignment), attributes_(state_, options) {
         initQuadrics(topology, assignment, state_);
         for (const Quadric& q : state_.quadrics) weight_ += q.weight;
         standing_ = double(state_.quadrics.size());
         scaleCosts(options);
         if (options.placement != Placement::subset) state_.makeRooms();
+        attributes_.grow(state_.wedgePosition.size());
         interiors_.reserve(state_.patches.size());
-        for (uint32_t p = 0; p < state_.patches.size(); ++p) interiors_.emplace_back(state_, p, options.placement);
-        boundary_ = std::make_unique<BoundaryCollapser>(state_, interiors_, options.placement);
+        for (uint32_t p = 0; p < state_.patches.size(); ++p)
+            interiors_.emplace_back(state_, attributes_, p, options.placement);
+        boundary_ = std::make_unique<BoundaryCollapser>(state_, attributes_, interiors_, options.placement);
         vanisher_ = std::make_unique<ComponentVanisher>(
             topology, state_, square(levelError(options.firstError * state_.diagonal, options.maxLevels)));
     }
@@ -117,6 +119,7 @@ private:
 
     const PatchAssignment& assignment_;
     SurfaceState state_;
+    AttributeQuadrics attributes_;
     double weight_ = 0;   ///< of all quadrics
     double standing_ = 0; ///< vertices of the uniform state, about: components that vanish count as one
     std::vector<InteriorCollapser> interiors_;

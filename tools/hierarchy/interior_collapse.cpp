@@ -5,11 +5,12 @@
 
 namespace xgc::bake {
 
-InteriorCollapser::InteriorCollapser(SurfaceState& state, uint32_t patch, Placement placement)
-    : state_(state), mesh_(state.patches[patch]), patch_(patch), placement_(placement), stamp_(mesh_.vertexCount(), 0),
-      target_(mesh_.vertexCount(), kNone), cost_(mesh_.vertexCount()), blocked_(mesh_.vertexCount()),
-      isDirty_(mesh_.vertexCount(), 0), meetsBoundary_(mesh_.vertexCount(), 0), held_(mesh_.vertexCount(), 0),
-      check_(state), marks_(mesh_.vertexCount(), 0) {
+InteriorCollapser::InteriorCollapser(SurfaceState& state, AttributeQuadrics& attributes, uint32_t patch,
+                                     Placement placement)
+    : state_(state), attributes_(attributes), mesh_(state.patches[patch]), patch_(patch), placement_(placement),
+      stamp_(mesh_.vertexCount(), 0), target_(mesh_.vertexCount(), kNone), cost_(mesh_.vertexCount()),
+      blocked_(mesh_.vertexCount()), isDirty_(mesh_.vertexCount(), 0), meetsBoundary_(mesh_.vertexCount(), 0),
+      held_(mesh_.vertexCount(), 0), check_(state), marks_(mesh_.vertexCount(), 0) {
     points_.reserve(mesh_.vertexCount());
     for (uint32_t v = 0; v < mesh_.vertexCount(); ++v) {
         points_.push_back(state.point(mesh_.position[v]));
@@ -73,23 +74,45 @@ double InteriorCollapser::uniformCost(uint32_t vertex) const {
         const uint32_t target = mesh_.corner[PatchMesh::next(c)];
         if (!isBoundary(target)) return;
         const uint32_t r = state_.representative[mesh_.position[target]];
-        best = std::min(best, state_.quadrics[v].cost(state_.point(r)) * state_.costScale[v]);
+        const double cost = state_.quadrics[v].cost(state_.point(r), attributeCost(c, r));
+        best = std::min(best, cost * state_.costScale[v]);
     });
     return best;
 }
 
-double InteriorCollapser::costOf(uint32_t vertex, uint32_t target) const {
-    if (!makesVertex(vertex, target)) return subsetCost(vertex, target);
-    return meetingOf(state_, placement_, mesh_.position[vertex], mesh_.position[target]).cost;
+/// Of a vertex that collapses along the edge on from one of its corners.
+double InteriorCollapser::costOf(uint32_t vertex, uint32_t corner) const {
+    const uint32_t next = PatchMesh::next(corner), target = mesh_.corner[next];
+    if (!makesVertex(vertex, target)) return subsetCost(vertex, corner);
+    return meetingOf(state_, attributes_, placement_, mesh_.position[vertex], mesh_.position[target],
+                     {mesh_.wedge[corner], mesh_.wedge[next]})
+        .cost;
 }
 
 /// At a boundary vertex that has itself collapsed: the larger of the costs at where it was and at where it is.
-double InteriorCollapser::subsetCost(uint32_t vertex, uint32_t target) const {
+double InteriorCollapser::subsetCost(uint32_t vertex, uint32_t corner) const {
+    const uint32_t target = mesh_.corner[PatchMesh::next(corner)];
     const uint32_t v = mesh_.position[vertex], w = mesh_.position[target];
     const uint32_t r = state_.representative[w];
-    double cost = state_.quadrics[v].cost(points_[target]);
-    if (r != w) cost = std::max(cost, state_.quadrics[v].cost(state_.point(r)));
+    const Quadric& quadric = state_.quadrics[v];
+    double cost = quadric.cost(points_[target], attributeCost(corner, w));
+    if (r != w) cost = std::max(cost, quadric.cost(state_.point(r), attributeCost(corner, r)));
     return cost * state_.costScale[v];
+}
+
+/// Of the corner's wedge at the next corner's vertex, or at its representative.
+double InteriorCollapser::attributeCost(uint32_t corner, uint32_t position) const {
+    if (attributes_.empty()) return 0;
+    const uint32_t next = PatchMesh::next(corner);
+    const bool inPlace = position == state_.positionAt(mesh_, next);
+    const uint32_t wedge = inPlace ? mesh_.wedge[next] : state_.uniformWedgeAt(mesh_, next);
+    return attributes_.cost(mesh_.wedge[corner], state_.point(position), wedge);
+}
+
+uint32_t InteriorCollapser::cornerTowards(uint32_t vertex, uint32_t target) const {
+    uint32_t corner = mesh_.head[vertex];
+    while (corner != kNone && mesh_.corner[PatchMesh::next(corner)] != target) corner = mesh_.link[corner];
+    return corner;
 }
 
 /// Finds the cheapest target that was not refused, and queues the vertex.
@@ -100,7 +123,7 @@ void InteriorCollapser::evaluate(uint32_t vertex) {
     uint32_t bestTarget = kNone;
     mesh_.forCorners(vertex, [&](uint32_t c) {
         const uint32_t target = mesh_.corner[PatchMesh::next(c)];
-        const double cost = costOf(vertex, target);
+        const double cost = costOf(vertex, c);
         if (cost < blocked.cost || (cost == blocked.cost && target <= blocked.target)) return;
         if (cost > best || (cost == best && target >= bestTarget)) return;
         best = cost;
@@ -120,7 +143,9 @@ void InteriorCollapser::reconsider(uint32_t vertex, uint32_t gone, uint32_t targ
         evaluate(vertex);
         return;
     }
-    const double cost = costOf(vertex, target);
+    const uint32_t corner = cornerTowards(vertex, target);
+    if (corner == kNone) return;
+    const double cost = costOf(vertex, corner);
     if (cost > cost_[vertex] || (cost == cost_[vertex] && target >= target_[vertex])) return;
     target_[vertex] = target;
     cost_[vertex] = cost;
@@ -145,7 +170,7 @@ InteriorCollapser::Outcome InteriorCollapser::tryCollapse(uint32_t vertex, uint3
     bool meets = makesVertex(vertex, target);
     if (meets && !arePaired(target)) {
         meets = false;
-        if (subsetCost(vertex, target) > limit_) {
+        if (subsetCost(vertex, cornerTowards(vertex, target)) > limit_) {
             ++counts_.wedgeRefused;
             return Outcome::refused;
         }
@@ -181,7 +206,7 @@ bool InteriorCollapser::arePaired(uint32_t target) const {
 /// Drafts the vertex at which both meet, and tries the triangles of both.
 InteriorCollapser::Outcome InteriorCollapser::tryMeeting(uint32_t vertex, uint32_t target, uint32_t level) {
     const uint32_t v = mesh_.position[vertex], w = mesh_.position[target];
-    const Meeting meeting = meetingOf(state_, placement_, v, w);
+    const Meeting meeting = meetingOf(state_, attributes_, placement_, v, w, wedges_.pairs().front());
     const uint32_t firstWedge = state_.rooms[patch_].wedge;
     const uint32_t made = state_.draft(patch_, meeting.point, v, w, wedges_.pairs());
     vertexWedges_.setMade(wedges_, firstWedge, false);
@@ -195,6 +220,7 @@ void InteriorCollapser::meet(uint32_t vertex, uint32_t target, uint32_t made, ui
     retire(mesh_.position[vertex], made, vertexWedges_, level);
     retire(mesh_.position[target], made, targetWedges_, level);
     state_.keep(patch_, level, {patch_, target});
+    for (const uint32_t wedge : state_.wedgesOf(made)) attributes_.make(wedge, state_.madeWedge(wedge));
     mesh_.forCorners(target, [&](uint32_t c) { mesh_.wedge[c] = targetWedges_(mesh_.wedge[c]); });
     mesh_.collapse(vertex, target, vertexWedges_);
     mesh_.position[target] = made;
@@ -335,6 +361,7 @@ void InteriorCollapser::collapse(uint32_t vertex, uint32_t target, uint32_t leve
     const uint32_t v = mesh_.position[vertex], w = mesh_.position[target];
     retire(v, w, wedges_, level);
     state_.quadrics[state_.representative[w]].add(state_.quadrics[v]);
+    for (const auto& [from, to] : wedges_.pairs()) attributes_.add(state_.wedgeRepresentative[to], from);
     ring_.clear();
     mesh_.forCorners(vertex, [&](uint32_t c) {
         ring_.push_back(mesh_.corner[PatchMesh::next(c)]);

@@ -27,7 +27,7 @@ struct CollapseCounts {
 /// vertices; reads the patches around. So patches without a common representative can work at the same time.
 class InteriorCollapser {
 public:
-    InteriorCollapser(SurfaceState& state, uint32_t patch, Placement placement);
+    InteriorCollapser(SurfaceState& state, AttributeQuadrics& attributes, uint32_t patch, Placement placement);
 
     /// A boundary vertex beside this one, or this one itself, has changed.
     void markDirty(uint32_t vertex) {
@@ -50,8 +50,10 @@ private:
 
     void evaluate(uint32_t vertex);
     void reconsider(uint32_t vertex, uint32_t gone, uint32_t target);
-    double costOf(uint32_t vertex, uint32_t target) const;
-    double subsetCost(uint32_t vertex, uint32_t target) const;
+    double costOf(uint32_t vertex, uint32_t corner) const;
+    double subsetCost(uint32_t vertex, uint32_t corner) const;
+    double attributeCost(uint32_t corner, uint32_t position) const;
+    uint32_t cornerTowards(uint32_t vertex, uint32_t target) const;
     double uniformCost(uint32_t vertex) const;
     Outcome tryCollapse(uint32_t vertex, uint32_t target, uint32_t level);
     bool mapWedges(uint32_t vertex, uint32_t target);
@@ -74,6 +76,7 @@ private:
     bool isBoundary(uint32_t vertex) const { return state_.isBoundary[mesh_.position[vertex]]; }
 
     SurfaceState& state_;
+    AttributeQuadrics& attributes_;
     PatchMesh& mesh_;
     const uint32_t patch_;
     const Placement placement_;

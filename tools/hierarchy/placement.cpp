@@ -25,7 +25,8 @@ glm::dvec3 minimum(const Quadric& q, const glm::dvec3& middle) {
 
 } // namespace
 
-Meeting meetingOf(const SurfaceState& state, Placement placement, uint32_t v, uint32_t w) {
+Meeting meetingOf(const SurfaceState& state, const AttributeQuadrics& attributes, Placement placement, uint32_t v,
+                  uint32_t w, std::pair<uint32_t, uint32_t> wedges) {
     Quadric q = state.quadrics[v];
     q.add(state.quadrics[w]);
     const glm::dvec3 a = state.point(v), b = state.point(w), middle = (a + b) / 2.0;
@@ -35,7 +36,9 @@ Meeting meetingOf(const SurfaceState& state, Placement placement, uint32_t v, ui
         const glm::dvec3 off = point - middle, along = b - a;
         if (glm::dot(off, off) > kFarthest * kFarthest * glm::dot(along, along)) point = middle;
     }
-    return {point, q.cost(point) * std::max(state.costScale[v], state.costScale[w])};
+    const double more =
+        attributes.empty() ? 0 : attributes.meetingCost(wedges.first, wedges.second, point, state.shareAt(v, w, point));
+    return {point, q.cost(point, more) * std::max(state.costScale[v], state.costScale[w])};
 }
 
 } // namespace xgc::bake

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hierarchy/attribute_quadrics.h"
 #include "hierarchy/surface_state.h"
 
 #include <xgc/bake/default_hierarchy.h>
@@ -12,7 +13,9 @@ struct Meeting {
     double cost;
 };
 
-/// The best point for both by `placement`, which must be one that makes vertices.
-Meeting meetingOf(const SurfaceState& state, Placement placement, uint32_t v, uint32_t w);
+/// The best point for both by `placement`, which must be one that makes vertices. `wedges`: a pair that would become
+/// one.
+Meeting meetingOf(const SurfaceState& state, const AttributeQuadrics& attributes, Placement placement, uint32_t v,
+                  uint32_t w, std::pair<uint32_t, uint32_t> wedges);
 
 } // namespace xgc::bake

@@ -50,7 +50,10 @@ struct Quadric {
 
     /// Half-way between the sum of squares (least RMS error) and their mean (least maximum error): the mean times the
     /// root of the weight.
-    double cost(const glm::dvec3& p) const { return weight > 0 ? sum(p) / std::sqrt(weight) : 0; }
+    /// `more`: a sum of squares of other things at that point, weighted alike.
+    double cost(const glm::dvec3& p, double more = 0) const {
+        return weight > 0 ? (sum(p) + more) / std::sqrt(weight) : 0;
+    }
 };
 
 } // namespace xgc::bake

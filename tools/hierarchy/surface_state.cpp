@@ -145,13 +145,17 @@ void SurfaceState::makeRooms() {
     occurrences.resize(firstMadeOccurrence + position - mesh.positions.size());
 }
 
+double SurfaceState::shareAt(uint32_t v, uint32_t w, const glm::dvec3& at) const {
+    const glm::dvec3 along = point(w) - point(v);
+    const double squared = glm::dot(along, along);
+    return squared > 0 ? glm::clamp(glm::dot(at - point(v), along) / squared, 0.0, 1.0) : 0.5;
+}
+
 uint32_t SurfaceState::draft(uint32_t room, const glm::dvec3& at, uint32_t v, uint32_t w,
                              std::span<const std::pair<uint32_t, uint32_t>> wedgePairs) {
     const uint32_t x = rooms[room].position;
     positions[x] = glm::vec3(at + origin);
-    const glm::dvec3 along = point(w) - point(v);
-    const double squared = glm::dot(along, along);
-    const double share = squared > 0 ? glm::clamp(glm::dot(point(x) - point(v), along) / squared, 0.0, 1.0) : 0.5;
+    const double share = shareAt(v, w, point(x));
     wedgeRanges[x] = {rooms[room].wedge, uint32_t(wedgePairs.size())};
     uint32_t wedge = rooms[room].wedge;
     for (const auto& [a, b] : wedgePairs) {

@@ -61,6 +61,7 @@ struct SurfaceState {
         float share;
     };
     std::vector<MadeWedge> madeWedges; ///< from mesh.wedgePosition.size() on
+    const MadeWedge& madeWedge(uint32_t wedge) const { return madeWedges[wedge - mesh.wedgePosition.size()]; }
 
     /// The next numbers for vertices that one worker makes; what lies between its start and these is in use.
     struct Room {
@@ -71,6 +72,8 @@ struct SurfaceState {
     bool makesVertices() const { return !rooms.empty(); }
     /// For placements that make vertices: before anything collapses.
     void makeRooms();
+    /// How far a point lies from one vertex to another, 0..1.
+    double shareAt(uint32_t v, uint32_t w, const glm::dvec3& at) const;
     /// Writes a vertex between two others at the next numbers of a room, which are taken only by `keep`. Its wedges,
     /// one a pair of theirs, are numbered on in order.
     uint32_t draft(uint32_t room, const glm::dvec3& point, uint32_t v, uint32_t w,

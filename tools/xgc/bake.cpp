@@ -211,6 +211,17 @@ void addBake(CLI::App& app, Run& run) {
     bake->add_option("--levels", arguments->options.hierarchy.maxLevels, "Levels above the input's, at most")
         ->check(CLI::Range(1, 200))
         ->capture_default_str();
+    bake->add_option("--normal-weight", arguments->options.hierarchy.normalWeight,
+                     "Cost of a normal turned by 1 rad, in diagonals of the model")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    bake->add_option("--uv-weight", arguments->options.hierarchy.uvWeight, "Cost of a UV moved by 1, in diagonals")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    bake->add_option("--color-weight", arguments->options.hierarchy.colorWeight,
+                     "Cost of a vertex colour changed by 1, in diagonals")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
     bake->add_option("--lock-part", arguments->lockedParts, "Part (name or number) whose vertices stay at all levels");
     bake->add_option("--importance", arguments->importances, "PART=FACTOR: errors of the part count FACTOR times");
     bake->add_option("--importance-color", arguments->importanceColor,

@@ -11,9 +11,9 @@ namespace xgc::bake {
 struct VerifyOptions {
     uint32_t states = 100; ///< random states; the uniform state of each level is checked as well
     uint64_t seed = 1;
-    uint32_t errorStates = 16;            ///< how many of them (uniform ones first) have their error sampled
-    uint32_t errorSamples = 20000;        ///< per such state, each way
-    uint32_t tightnessSamples = 0;        ///< per patch and level, each way, for `errorTightness`; 0: it is not measured
+    uint32_t errorStates = 16;     ///< how many of them (uniform ones first) have their error sampled
+    uint32_t errorSamples = 20000; ///< per such state, each way
+    uint32_t tightnessSamples = 0; ///< per patch and level, each way, for `errorTightness`; 0: it is not measured
     std::function<void(double)> progress; ///< finished fraction; called under a lock, from any thread
 };
 
@@ -28,8 +28,8 @@ struct VerifyReport {
     uint64_t fourUseEdges = 0;  ///< edges used four times or more, evenly: harmless to drawing
     uint64_t fallingErrors = 0; ///< patches and levels where E falls
     uint64_t errorSamples = 0;
-    uint64_t errorViolations = 0;  ///< samples farther from the other surface than promised
-    double worstErrorRatio = 0;    ///< largest sampled deviation over its promise
+    uint64_t errorViolations = 0; ///< samples farther from the other surface than promised
+    double worstErrorRatio = 0;   ///< largest sampled deviation over its promise
     /// E over the largest sampled deviation, median over the patches and levels that deviate; 0 where not measured
     double errorTightness = 0;
     uint64_t sourceMismatches = 0; ///< triangles of level 0 and of the source that the other one lacks
