@@ -3,7 +3,9 @@
 
 #include <bake/surface_distance.h>
 #include <verify/nearest.h>
+#include <xgc/bake/default_hierarchy.h>
 #include <xgc/bake/error.h>
+#include <xgc/bake/patches.h>
 #include <xgc/bake/thesis_hierarchy.h>
 
 #include <doctest/doctest.h>
@@ -91,9 +93,10 @@ std::vector<Triangle> trianglesOf(const Hierarchy& h, const std::vector<glm::uve
     return out;
 }
 
-/// The largest sampled deviation of each patch at a level, both ways.
-std::vector<double> sampledErrors(const Mesh& mesh, const Hierarchy& h, uint32_t level, uint32_t samples) {
-    const DrawnSurface drawn = drawSurface(mesh, h, std::vector<uint8_t>(h.patchCount(), uint8_t(level)));
+/// The largest sampled deviation of each patch in a state, both ways.
+std::vector<double> sampledErrors(const Mesh& mesh, const Hierarchy& h, const std::vector<uint8_t>& levels,
+                                  uint32_t samples) {
+    const DrawnSurface drawn = drawSurface(mesh, h, levels);
     const std::vector<Triangle> base = trianglesOf(h, mesh.faces), now = trianglesOf(h, drawn.triangles);
     const SurfaceDistance input(base), surface(now);
     std::vector<double> worst(h.patchCount(), 0.0);
@@ -110,6 +113,21 @@ std::vector<double> sampledErrors(const Mesh& mesh, const Hierarchy& h, uint32_t
     for (uint32_t i = 0; i < now.size(); ++i) sample(now[i], drawn.face[i], input);
     for (double& w : worst) w = std::sqrt(w);
     return worst;
+}
+
+std::vector<double> sampledErrors(const Mesh& mesh, const Hierarchy& h, uint32_t level, uint32_t samples) {
+    return sampledErrors(mesh, h, std::vector<uint8_t>(h.patchCount(), uint8_t(level)), samples);
+}
+
+/// The promise of a state for each patch: 1.05 times the largest E of it and of those it shares a domain with.
+std::vector<double> promises(const PatchErrors& errors, const Hierarchy& h, const std::vector<uint8_t>& levels) {
+    std::vector<double> promise(h.patchCount(), 0.0);
+    for (const std::vector<uint32_t>& patches : h.domainPatches) {
+        for (const uint32_t p : patches) {
+            for (const uint32_t q : patches) promise[p] = std::max(promise[p], 1.05 * errorAt(errors, h, q, levels[q]));
+        }
+    }
+    return promise;
 }
 
 /// No sampled deviation lies beyond its bound, which never falls. Returns the median of bound over sample.
@@ -322,11 +340,36 @@ TEST_CASE("no deviation lies beyond the bound, whatever a hierarchy does") {
     }
 }
 
+TEST_CASE("no deviation lies beyond the promise in mixed states of the default hierarchy") {
+    const Model models[] = {bumpy(test::sphere(16), 0.1f), bumpy(test::grid(20), 0.2f), bumpy(test::cube(9), 0.05f)};
+    Numbers numbers{7};
+    for (const Model& model : models) {
+        const Mesh mesh = test::welded(model);
+        for (uint32_t patchCount = 2; patchCount <= 6; ++patchCount) {
+            const Topology topology = buildTopology(mesh);
+            const PatchAssignment patches = splitPatches(mesh, topology, test::slabs(mesh, patchCount), 0);
+            const Hierarchy h = buildDefaultHierarchy(mesh, topology, patches, {});
+            const PatchErrors errors = measured(mesh, h);
+            for (uint32_t state = 0; state < 12; ++state) {
+                const auto random = [&] { return uint32_t((numbers.next() * 0.5f + 0.5f) * float(h.levelCount)); };
+                std::vector<uint8_t> levels(h.patchCount());
+                for (uint8_t& level : levels) {
+                    level = uint8_t(std::min(random(), h.levelCount - 1));
+                    if (state % 2) level = level > h.levelCount / 2 ? uint8_t(h.levelCount - 1) : uint8_t(0);
+                }
+                const std::vector<double> promise = promises(errors, h, levels);
+                const std::vector<double> sampled = sampledErrors(mesh, h, levels, 8);
+                for (uint32_t p = 0; p < h.patchCount(); ++p) CHECK(sampled[p] <= promise[p] + 1e-6);
+            }
+        }
+    }
+}
+
 TEST_CASE("the bounds of the thesis's hierarchy are tight") {
     const Mesh mesh = test::welded(bumpy(test::sphere(20), 0.05f));
     const Hierarchy h = buildThesisHierarchy(mesh, buildTopology(mesh), test::slabs(mesh, 3), {});
     REQUIRE(h.levelCount > 3);
-    CHECK(checkBounds(mesh, h, 20) <= 1.2);
+    CHECK(checkBounds(mesh, h, 20) <= 1.2 * 1.25); // with the margin of patches that have neighbours
 }
 
 TEST_CASE("the result does not depend on the threads") {
