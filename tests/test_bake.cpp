@@ -293,3 +293,53 @@ TEST_CASE("flat normals hold a mesh up, say so, and give way to smooth ones") {
     CHECK(smoothed.vertices == smoothed.positions);
     CHECK(smoothed.levels.back().faces * 2 < smoothed.faces);
 }
+
+TEST_CASE("what holds an asset up is named: where, why, and what to do") {
+    const Folder folder;
+    writeOff(test::sphere(24), folder.path / "in.off");
+    BakeOptions options = optionsFor(folder, "out.xgc");
+    options.parts = PartSource::none;
+    BakeReport report;
+    REQUIRE(bake::bake(options, report).ok());
+    CHECK(report.floor.faces == report.levels.back().faces);
+    CHECK(report.floor.faces <= 64);
+    CHECK(report.floor.components == 1);
+    CHECK(report.verdicts.empty()); // all is well
+
+    const Model sheet = test::grid(24);
+    std::vector<glm::vec3> points = sheet.positions;
+    std::vector<glm::uvec3> faces = sheet.triangles;
+    for (size_t f = 0; f < sheet.triangles.size(); f += 2) { // fins: edges of three faces
+        const glm::uvec3 t = sheet.triangles[f];
+        points.push_back(points[t.x] + glm::vec3(0, 0, glm::distance(points[t.x], points[t.y])));
+        faces.emplace_back(t.x, t.y, uint32_t(points.size() - 1));
+    }
+    writeOff(test::modelOf(points, faces), folder.path / "in.off");
+    REQUIRE(bake::bake(options, report).ok());
+    uint32_t held = 0, kept = 0;
+    for (const uint32_t h : report.floor.held) held += h;
+    for (const PartFloor& p : report.floor.parts) kept += p.faces;
+    CHECK(held == report.floor.faces);
+    CHECK(kept == report.floor.faces);
+    CHECK(report.warningCount() > 0);
+}
+
+TEST_CASE("a locked part is held by its lock, and that is no warning") {
+    const Folder folder;
+    writeOff(twoSpheres(), folder.path / "in.off");
+    BakeOptions options = optionsFor(folder, "out.xgc");
+    options.parts = PartSource::component;
+    options.importance = {{"component-0", std::numeric_limits<float>::infinity()}};
+    BakeReport report;
+    REQUIRE(bake::bake(options, report).ok());
+    REQUIRE(!report.floor.parts.empty());
+    const PartFloor& locked = report.floor.parts.front();
+    CHECK(report.partNames[locked.part] == "component-0");
+    CHECK(locked.faces == locked.baseFaces);
+    CHECK(locked.hold == Hold::locked);
+    CHECK(locked.heldBy(Hold::locked) == locked.faces);
+    CHECK(report.warningCount() == 0);
+    const auto json = nlohmann::json::parse(reportJson(options, report));
+    CHECK(json["floor"]["parts"][0]["name"] == "component-0");
+    CHECK(json["floor"]["held"]["locked"] == locked.faces);
+}

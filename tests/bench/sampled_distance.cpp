@@ -1,110 +1,36 @@
 #include "sampled_distance.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <verify/nearest.h>
-
-#include <algorithm>
 #include <cmath>
-#include <random>
 
 namespace xgc::bench {
 namespace {
 
-glm::dvec3 at(const Surface& s, uint32_t row) {
-    return s.points[row];
-}
-
-double areaOf(const Surface& s, const glm::uvec3& t) {
-    return glm::length(glm::cross(at(s, t.y) - at(s, t.x), at(s, t.z) - at(s, t.x))) / 2;
-}
-
-/// In [0, 1), from the generator's own bits: the standard's distributions differ between libraries.
-double unit(std::mt19937_64& random) {
-    return double(random() >> 11) * 0x1p-53;
-}
-
-std::vector<glm::vec3> pointsInUse(const Surface& s) {
-    std::vector<uint8_t> used(s.points.size());
-    for (const glm::uvec3& t : s.triangles) used[t.x] = used[t.y] = used[t.z] = 1;
-    std::vector<glm::vec3> points;
-    for (size_t v = 0; v < used.size(); ++v) {
-        if (used[v]) points.push_back(s.points[v]);
-    }
-    return points;
-}
-
-std::vector<double> distances(size_t count, const bake::Nearest& to, auto&& point) {
-    std::vector<double> d(count);
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 1024), [&](const tbb::blocked_range<size_t>& range) {
-        for (size_t i = range.begin(); i != range.end(); ++i) d[i] = to.distance(point(i));
-    });
-    return d;
-}
-
-Deviation deviationOf(const Surface& s, std::span<const SamplePoint> samples, const bake::Nearest& to) {
-    Deviation deviation;
-    const std::vector<double> d = distances(samples.size(), to, [&](size_t i) { return samples[i].point; });
-    for (const double x : d) {
-        deviation.rms += x * x / double(d.size());
-        deviation.max = std::max(deviation.max, x);
-    }
-    deviation.rms = std::sqrt(deviation.rms);
-    const std::vector<glm::vec3> vertices = pointsInUse(s);
-    for (const double x : distances(vertices.size(), to, [&](size_t i) { return vertices[i]; }))
-        deviation.max = std::max(deviation.max, x);
-    return deviation;
+bake::SurfaceView viewOf(const Surface& s) {
+    return {s.points, s.triangles};
 }
 
 double diagonalOf(const Surface& s) {
     glm::vec3 low(INFINITY), high(-INFINITY);
-    for (const glm::vec3& p : pointsInUse(s)) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
+    for (const glm::uvec3& t : s.triangles) {
+        for (int k = 0; k < 3; ++k) {
+            low = glm::min(low, s.points[t[k]]);
+            high = glm::max(high, s.points[t[k]]);
+        }
     }
     return glm::distance(glm::dvec3(low), glm::dvec3(high));
 }
 
 } // namespace
 
-double TwoSided::rms() const {
-    return std::sqrt((fromReference.rms * fromReference.rms + toReference.rms * toReference.rms) / 2);
-}
-
-double TwoSided::max() const {
-    return std::max(fromReference.max, toReference.max);
-}
-
-std::vector<SamplePoint> samplePoints(const Surface& s, uint32_t count) {
-    std::vector<double> sums{0}; // of areas
-    for (const glm::uvec3& t : s.triangles) sums.push_back(sums.back() + areaOf(s, t));
-    std::mt19937_64 random(1);
-    std::vector<SamplePoint> samples;
-    if (sums.back() <= 0) return samples;
-    samples.reserve(count);
-    uint32_t triangle = 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        const double area = (i + unit(random)) / count * sums.back();
-        while (triangle + 2 < sums.size() && sums[triangle + 1] <= area) ++triangle;
-        const double root = std::sqrt(unit(random)), v = unit(random);
-        const glm::dvec3 weights(1 - root, root * (1 - v), root * v);
-        const glm::uvec3& t = s.triangles[triangle];
-        const glm::dvec3 point = weights.x * at(s, t.x) + weights.y * at(s, t.y) + weights.z * at(s, t.z);
-        samples.push_back({glm::vec3(point), triangle, glm::vec3(weights)});
-    }
-    return samples;
+std::vector<SamplePoint> samplePoints(const Surface& surface, uint32_t count) {
+    return bake::samplePoints(viewOf(surface), count);
 }
 
 DistanceReference::DistanceReference(Surface surface, uint32_t samples)
-    : surface_(std::move(surface)), sampleCount_(samples), diagonal_(diagonalOf(surface_)),
-      samples_(samplePoints(surface_, samples)),
-      nearest_(std::make_unique<bake::Nearest>(surface_.points, surface_.triangles)) {}
-
-DistanceReference::~DistanceReference() = default;
+    : surface_(std::move(surface)), diagonal_(diagonalOf(surface_)), distance_(viewOf(surface_), samples) {}
 
 TwoSided DistanceReference::compare(const Surface& other) const {
-    const bake::Nearest nearest(other.points, other.triangles);
-    return {deviationOf(surface_, samples_, nearest), deviationOf(other, samplePoints(other, sampleCount_), *nearest_)};
+    return distance_.compare(viewOf(other));
 }
 
 } // namespace xgc::bench

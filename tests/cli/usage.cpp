@@ -80,6 +80,7 @@ TEST_CASE("JSON has the documented keys, and work without a terminal draws no pr
 
     const Json bake = Json::parse(readText(report));
     checkKeys(bake, {"input", "stages", "faces", "parts", "patches", "sections", "streams", "levels", "verdicts"});
+    checkKeys(bake["floor"], {"faces", "components", "held", "parts"});
     checkKeys(bake["streams"][0], {"name", "set", "rawBytes", "storedBytes"});
     REQUIRE_FALSE(bake["stages"].empty());
     checkKeys(bake["stages"][0], {"name", "seconds", "peakBytes"});
@@ -128,6 +129,30 @@ TEST_CASE("bake --verbose prints stages, levels and sizes, and cannot be quiet")
     }
     CHECK(runXgc({"bake", in, "-o", out}).err.find("tables") == std::string::npos);
     CHECK(runXgc({"bake", in, "-o", out, "--verbose", "--quiet"}).exitCode == 2);
+}
+
+TEST_CASE("bake --plot draws an SVG of both curves; another extension is refused") {
+    const Folder folder("plot");
+    const std::string in = folder.file("creature.ply"), out = folder.file("cube.xgc"), plot = folder.file("cube.svg");
+    REQUIRE(runXgc({"model", "creature", "-o", in, "--faces", "1000", "--quiet"}).exitCode == 0);
+    const std::string report = folder.file("cube.json");
+    REQUIRE(runXgc({"bake", in, "-o", out, "--plot", plot, "--report", report}).exitCode == 0);
+    const std::string svg = readText(plot);
+    CHECK(svg.starts_with("<svg "));
+    CHECK(svg.ends_with("</svg>\n"));
+    for (const char* word : {"creature.ply", "RMS", "bound E", "polyline"}) {
+        INFO(word);
+        CHECK(svg.find(word) != std::string::npos);
+    }
+    CHECK(svg.find("nan") == std::string::npos);
+    CHECK(svg.find("inf") == std::string::npos);
+    const Json json = Json::parse(readText(report));
+    CHECK(json["stages"].size() == 8);
+    for (const Json& level : json["levels"]) CHECK(level["rms"] <= level["error"].get<double>() + 1e-6);
+
+    const RunResult wrong = runXgc({"bake", in, "-o", out, "--plot", folder.file("cube.png")});
+    CHECK(wrong.exitCode == 2);
+    CHECK(wrong.err.find("cube.png") != std::string::npos);
 }
 
 TEST_CASE("a baked asset does not depend on the number of threads") {

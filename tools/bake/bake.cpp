@@ -1,4 +1,5 @@
 #include "importance.h"
+#include "sample_levels.h"
 #include "stage_clock.h"
 #include "verdicts.h"
 
@@ -49,6 +50,12 @@ Status prepareMesh(const BakeOptions& options, Work& work, BakeReport& report) {
     report.faces = work.mesh.faceCount();
     report.vertices = uint32_t(work.mesh.wedgePosition.size());
     report.positions = uint32_t(work.mesh.positions.size());
+    glm::vec3 low(work.mesh.positions[0]), high = low;
+    for (const glm::vec3& p : work.mesh.positions) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    report.diagonal = glm::distance(low, high);
     return {};
 }
 
@@ -74,6 +81,7 @@ Status segment(const BakeOptions& options, Work& work, BakeReport& report) {
     }
     }
     report.parts = work.parts.partCount();
+    report.partNames = work.parts.partNames;
     return {};
 }
 
@@ -85,6 +93,7 @@ Status buildHierarchy(const BakeOptions& options, Work& work, BakeReport& report
         if (Status s = findImportances(options, work.mesh, work.parts, hierarchy); !s.ok()) return s;
         const PatchAssignment patches = splitPatches(work.mesh, work.topology, work.parts, options.patchFaces);
         work.hierarchy = buildDefaultHierarchy(work.mesh, work.topology, patches, hierarchy, &report.levels);
+        report.floor = findFloor(work.mesh, work.hierarchy, hierarchy);
     }
     report.patches = work.hierarchy.patchCount();
     return checkHierarchy(work.mesh, work.hierarchy);
@@ -114,6 +123,14 @@ Status measure(const BakeOptions& options, Work& work, BakeReport& report) {
         largest = std::max(largest, work.errors.values[i]);
     }
     return {};
+}
+
+Status sample(const BakeOptions& options, Work& work, BakeReport& report) {
+    report.levelRms = sampleLevels(work.mesh, work.hierarchy, options.rmsSamples, [&](double fraction) {
+        if (options.progress) options.progress("sample", fraction);
+        return !isCancelled(options);
+    });
+    return isCancelled(options) ? cancelledStatus(options) : Status{};
 }
 
 /// XXH64 of the model file's bytes; empty where it cannot be read again.
@@ -209,6 +226,7 @@ Status bake(const BakeOptions& options, BakeReport& report) {
     if (s.ok()) s = stage("segment", [&] { return segment(options, work, report); });
     if (s.ok()) s = stage("build", [&] { return buildHierarchy(options, work, report); });
     if (s.ok()) s = stage("measure", [&] { return measure(options, work, report); });
+    if (s.ok() && options.rmsSamples > 0) s = stage("sample", [&] { return sample(options, work, report); });
     if (s.ok()) s = stage("lay out", [&] { return layOut(options, work, report); });
     if (s.ok() && options.compress) s = stage("compress", [&] { return compress(options, work, report); });
     if (s.ok()) report.sizes = sizesOf(work.bytes);

@@ -1,6 +1,9 @@
 #include <xgc/bake/bake.h>
+#include <xgc/bake/error_plot.h>
 
 #include <nlohmann/json.hpp>
+
+#include <cmath>
 
 namespace xgc::bake {
 namespace {
@@ -43,6 +46,28 @@ Json levelJson(const HierarchyLevelReport& level, float error) {
             {"seconds", level.seconds}};
 }
 
+Json heldJson(const std::array<uint32_t, kHoldCount>& held) {
+    Json json = Json::object();
+    for (uint32_t h = 0; h < kHoldCount; ++h) json[holdName(Hold(h))] = held[h];
+    return json;
+}
+
+Json floorJson(const BakeReport& report) {
+    Json parts = Json::array();
+    for (const PartFloor& p : report.floor.parts) {
+        parts.push_back({{"id", p.part},
+                         {"name", report.partNames[p.part]},
+                         {"baseFaces", p.baseFaces},
+                         {"faces", p.faces},
+                         {"held", heldJson(p.held)},
+                         {"place", {p.place.x, p.place.y, p.place.z}}});
+    }
+    return {{"faces", report.floor.faces},
+            {"components", report.floor.components},
+            {"held", heldJson(report.floor.held)},
+            {"parts", parts}};
+}
+
 Json sizesJson(const std::vector<SizeReport>& sizes, bool sets) {
     Json json = Json::array();
     for (const SizeReport& s : sizes) {
@@ -79,7 +104,10 @@ std::string reportJson(const BakeOptions& options, const BakeReport& report) {
     for (size_t l = 0; l < report.levels.size(); ++l) {
         json["levels"].push_back(
             levelJson(report.levels[l], l < report.levelErrors.size() ? report.levelErrors[l] : 0));
+        if (l < report.levelRms.size() && std::isfinite(report.levelRms[l]))
+            json["levels"].back()["rms"] = report.levelRms[l];
     }
+    if (options.preset == Preset::standard) json["floor"] = floorJson(report);
     json["weld"] = weldJson(report.weld);
     if (options.parts == PartSource::thesis) json["segment"] = segmentJson(report.segment);
     json["verdicts"] = Json::array();
@@ -90,6 +118,15 @@ std::string reportJson(const BakeOptions& options, const BakeReport& report) {
                                     {"remedy", v.remedy}});
     }
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string reportPlot(const BakeOptions& options, const BakeReport& report) {
+    std::vector<PlotLevel> levels;
+    for (size_t l = 0; l < report.levels.size(); ++l) {
+        levels.push_back({double(report.levels[l].faces), l < report.levelErrors.size() ? report.levelErrors[l] : 0.0,
+                          l < report.levelRms.size() ? report.levelRms[l] : 0.0});
+    }
+    return errorPlotSvg(options.input.filename().string(), report.diagonal, levels);
 }
 
 } // namespace xgc::bake

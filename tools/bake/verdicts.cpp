@@ -46,31 +46,102 @@ void judgeSegmentation(BakeReport& report) {
     }
 }
 
+/// A few dozen triangles: what any asset should be able to fall to.
+constexpr uint32_t kSmallFloor = 64;
+/// Faces that a part keeps for one reason before it is named.
+constexpr uint32_t kManyFaces = 32;
+constexpr uint32_t kNamedParts = 4;
+
+bool isSmall(const BakeOptions& options, const BakeReport& report) {
+    return options.preset == Preset::standard && report.floor.faces <= kSmallFloor;
+}
+
 /// Positions with several wedges are seams, which coarsen along themselves only, or not at all (thesis).
 void judgeSeams(const BakeOptions& options, BakeReport& report) {
     const double split = double(report.vertices) / std::max(1u, report.positions) - 1;
-    if (split < 0.5) return;
+    if (split < 0.5 || isSmall(options, report)) return;
+    const bool locks = options.preset == Preset::thesis;
+    if (!locks && 2 * report.floor.held[size_t(Hold::seam)] < report.floor.faces) return;
     report.verdicts.push_back(
         {Severity::warning,
          fmt::format("{:.1f} vertices a position: normals or UVs are split nearly everywhere, and seams {}", 1 + split,
-                     options.preset == Preset::thesis ? "are locked" : "coarsen along themselves only"),
+                     locks ? "are locked" : "coarsen along themselves only"),
          "weld", "bake with --normals smooth if the normals are flat by accident"});
+}
+
+struct HoldText {
+    const char* what;
+    const char* remedy;
+};
+
+HoldText textOf(Hold hold) {
+    switch (hold) {
+    case Hold::locked:
+        return {"locked vertices", "unlock what need not stay at any distance"};
+    case Hold::nonManifold:
+        return {"edges of more than two faces", "separate the sheets that meet there"};
+    case Hold::piece:
+        return {"loose pieces, too large or too far from others to vanish", "join them to what they belong to"};
+    case Hold::handle:
+        return {"handles and holes", "close those that nobody sees through"};
+    case Hold::seam:
+        return {"seams of normals, UVs or colours", "use fewer and larger UV charts, or --normals smooth"};
+    case Hold::boundary:
+        return {"boundaries of parts or patches", "use fewer parts (--parts), or larger patches (--patch-faces)"};
+    case Hold::fold:
+        return {"faces that would turn over", "look for thin or folded sheets there"};
+    case Hold::error:
+        break;
+    }
+    return {"its shape", "allow more levels (--levels)"};
+}
+
+Severity severityOf(Hold hold) {
+    return hold == Hold::locked || hold == Hold::error ? Severity::note : Severity::warning;
+}
+
+/// Names the parts that keep most of the coarsest level, and sums up the rest by reason.
+void judgeParts(BakeReport& report) {
+    std::array<uint32_t, kHoldCount> rest = report.floor.held;
+    uint32_t named = 0;
+    for (const PartFloor& part : report.floor.parts) {
+        const uint32_t held = part.heldBy(part.hold);
+        if (named == kNamedParts || held < kManyFaces || 8 * held < report.floor.faces) continue;
+        const HoldText text = textOf(part.hold);
+        report.verdicts.push_back({severityOf(part.hold),
+                                   fmt::format("{} of {} faces stay at the coarsest level, {} of them held by {}",
+                                               part.faces, part.baseFaces, held, text.what),
+                                   fmt::format("part '{}' near ({:.4g}, {:.4g}, {:.4g})", report.partNames[part.part],
+                                               part.place.x, part.place.y, part.place.z),
+                                   text.remedy});
+        rest[size_t(part.hold)] -= held;
+        ++named;
+    }
+    for (uint32_t h = 0; h < kHoldCount; ++h) {
+        if (rest[h] <= kSmallFloor) continue;
+        const HoldText text = textOf(Hold(h));
+        report.verdicts.push_back({severityOf(Hold(h)),
+                                   fmt::format("{} faces stay at the coarsest level in {}parts, held by {}", rest[h],
+                                               named > 0 ? "other " : "", text.what),
+                                   "build", text.remedy});
+    }
 }
 
 /// Says what holds an asset up that does not become small.
 void judgeFloor(const BakeOptions& options, BakeReport& report) {
-    if (report.levels.size() < 2 || report.faces == 0) {
+    if (report.faces > 0 && !isSmall(options, report) && report.levels.size() < 2) {
         report.verdicts.push_back({Severity::warning, "no vertex may collapse: the asset has one level", "build",
                                    "every vertex lies on a boundary, seam or crease; use fewer parts"});
         return;
     }
-    const double left = 100.0 * report.levels.back().faces / report.faces;
-    if (options.preset == Preset::thesis) {
-        if (left <= 50) return;
-        report.verdicts.push_back({Severity::warning,
-                                   fmt::format("{:.1f} % of the faces stay at the coarsest level", left), "build",
-                                   "boundaries of parts, seams and sharp features are locked; use fewer parts"});
+    if (options.preset == Preset::standard) {
+        if (!isSmall(options, report)) judgeParts(report);
+        return;
     }
+    const double left = 100.0 * report.levels.back().faces / std::max(1u, report.faces);
+    if (left <= 50) return;
+    report.verdicts.push_back({Severity::warning, fmt::format("{:.1f} % of the faces stay at the coarsest level", left),
+                               "build", "boundaries of parts, seams and sharp features are locked; use fewer parts"});
 }
 
 } // namespace

@@ -15,10 +15,12 @@
 namespace xgc::tool {
 namespace {
 
+constexpr uint32_t kPlotSamples = 20'000;
+
 std::atomic<bool> interrupted{false};
 
 struct BakeArguments {
-    std::string input, output, report;
+    std::string input, output, report, plot;
     std::string preset = "default", placement = "subset", parts = "thesis", curvature = "trace", normals = "keep",
                 importanceColor;
     std::vector<std::string> lockedParts, importances;
@@ -82,6 +84,11 @@ bake::Status parse(const BakeArguments& arguments, bake::BakeOptions& options) {
                                : arguments.curvature == "frobenius" ? bake::CurvatureNorm::frobenius
                                                                     : bake::CurvatureNorm::trace;
     options.normals = arguments.normals == "smooth" ? bake::NormalSource::smooth : bake::NormalSource::keep;
+    if (!arguments.plot.empty()) {
+        if (std::filesystem::path(arguments.plot).extension() != ".svg")
+            return bake::usageError(fmt::format("--plot {}: the picture must end in .svg", arguments.plot));
+        options.rmsSamples = kPlotSamples;
+    }
     options.input = arguments.input;
     options.output = arguments.output;
     if (options.output.extension() != ".xgc") {
@@ -157,9 +164,14 @@ void print(const BakeArguments& arguments, const bake::BakeReport& report) {
 }
 
 bake::Status writeReports(const BakeArguments& arguments, const bake::BakeReport& report) {
-    if (arguments.report.empty()) return {};
-    const std::string json = bake::reportJson(arguments.options, report);
-    return bake::writeFileAtomically(arguments.report, std::as_bytes(std::span(json)));
+    const auto write = [](const std::string& file, const std::string& text) {
+        return bake::writeFileAtomically(file, std::as_bytes(std::span(text)));
+    };
+    bake::Status status;
+    if (!arguments.report.empty()) status = write(arguments.report, bake::reportJson(arguments.options, report));
+    if (status.ok() && !arguments.plot.empty())
+        status = write(arguments.plot, bake::reportPlot(arguments.options, report));
+    return status;
 }
 
 bake::Status runBake(BakeArguments& arguments) {
@@ -249,6 +261,7 @@ void addBake(CLI::App& app, Run& run) {
         ->check(CLI::Range(0u, 23u))
         ->capture_default_str();
     bake->add_option("--report", arguments->report, "Write a report as JSON");
+    bake->add_option("--plot", arguments->plot, "Draw faces against error, bound and sampled RMS, as a FILE.svg");
     bake->add_option("--jobs", arguments->jobs, "Threads; 0: all cores")->capture_default_str();
     bake->add_flag("--strict", arguments->options.strict,
                    "Warnings fail the bake: exit code 1, nothing written but the report");

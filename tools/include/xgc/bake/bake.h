@@ -4,6 +4,7 @@
 #include <xgc/bake/asset_writer.h>
 #include <xgc/bake/compress.h>
 #include <xgc/bake/default_hierarchy.h>
+#include <xgc/bake/floor.h>
 #include <xgc/bake/mesh.h>
 #include <xgc/bake/segment.h>
 #include <xgc/bake/thesis_hierarchy.h>
@@ -54,7 +55,8 @@ struct BakeOptions {
     RoundingOptions rounding;
     bool compress = false; ///< false: the file can be mapped and opened where it lies
     CompressOptions compression;
-    bool strict = false; ///< a warning among the verdicts fails the bake before it writes
+    bool strict = false;     ///< a warning among the verdicts fails the bake before it writes
+    uint32_t rmsSamples = 0; ///< points each way by which the report's RMS of each level is measured; 0: it is not
     /// Told a stage's name and finished fraction, on the calling thread.
     std::function<void(const char* stage, double fraction)> progress;
     /// Set from anywhere (a signal handler) to stop at the next step; the target is then untouched.
@@ -83,6 +85,10 @@ struct BakeReport {
     ThesisSegmentTrace segment; ///< of PartSource::thesis
     std::vector<HierarchyLevelReport> levels;
     std::vector<float> levelErrors; ///< largest E of each level, mesh units
+    std::vector<float> levelRms;    ///< sampled, both ways, mesh units; empty without BakeOptions::rmsSamples
+    float diagonal = 0;             ///< of the mesh's bounds
+    FloorReport floor;              ///< of Preset::standard
+    std::vector<std::string> partNames;
     uint32_t faces = 0;
     uint32_t vertices = 0; ///< wedges
     uint32_t positions = 0;
@@ -104,5 +110,8 @@ Status bake(const BakeOptions& options, BakeReport& report);
 
 /// The report as JSON, as documented in tools/README.md.
 std::string reportJson(const BakeOptions& options, const BakeReport& report);
+
+/// A picture of faces against error by level, bound and RMS (error_plot.h).
+std::string reportPlot(const BakeOptions& options, const BakeReport& report);
 
 } // namespace xgc::bake
