@@ -340,28 +340,60 @@ TEST_CASE("no deviation lies beyond the bound, whatever a hierarchy does") {
     }
 }
 
+/// Samples states in which the levels differ against the promise; returns the largest share of it that is used up.
+double worstInMixedStates(const Mesh& mesh, const Hierarchy& h, Numbers& numbers) {
+    const PatchErrors errors = measured(mesh, h);
+    const auto below = [&](uint32_t n) { return std::min(uint32_t((numbers.next() * 0.5f + 0.5f) * float(n)), n - 1); };
+    double worst = 0;
+    for (uint32_t state = 0; state < 40; ++state) {
+        std::vector<uint8_t> levels(h.patchCount(), 0);
+        if (state % 2) { // one patch coarser than the others
+            const uint32_t rest = below(h.levelCount);
+            levels.assign(h.patchCount(), uint8_t(rest));
+            levels[below(h.patchCount())] = uint8_t(std::min(rest + below(h.levelCount), h.levelCount - 1));
+        } else {
+            for (uint8_t& level : levels) level = uint8_t(below(h.levelCount));
+        }
+        const std::vector<double> promise = promises(errors, h, levels);
+        const std::vector<double> sampled = sampledErrors(mesh, h, levels, 8);
+        for (uint32_t p = 0; p < h.patchCount(); ++p) worst = std::max(worst, sampled[p] / (promise[p] + 1e-6));
+    }
+    return worst;
+}
+
 TEST_CASE("no deviation lies beyond the promise in mixed states of the default hierarchy") {
-    const Model models[] = {bumpy(test::sphere(16), 0.1f), bumpy(test::grid(20), 0.2f), bumpy(test::cube(9), 0.05f)};
-    Numbers numbers{7};
+    // Without the trial of mixed states the cube of 4 patches goes to 1.22.
+    const Model models[] = {bumpy(test::sphere(12), 0.1f), bumpy(test::grid(12), 0.35f), bumpy(test::cube(10), 0.05f)};
     for (const Model& model : models) {
         const Mesh mesh = test::welded(model);
-        for (uint32_t patchCount = 2; patchCount <= 6; ++patchCount) {
+        for (const uint32_t patchCount : {2u, 4u, 7u}) {
+            Numbers numbers{7};
             const Topology topology = buildTopology(mesh);
             const PatchAssignment patches = splitPatches(mesh, topology, test::slabs(mesh, patchCount), 0);
             const Hierarchy h = buildDefaultHierarchy(mesh, topology, patches, {});
-            const PatchErrors errors = measured(mesh, h);
-            for (uint32_t state = 0; state < 12; ++state) {
-                const auto random = [&] { return uint32_t((numbers.next() * 0.5f + 0.5f) * float(h.levelCount)); };
-                std::vector<uint8_t> levels(h.patchCount());
-                for (uint8_t& level : levels) {
-                    level = uint8_t(std::min(random(), h.levelCount - 1));
-                    if (state % 2) level = level > h.levelCount / 2 ? uint8_t(h.levelCount - 1) : uint8_t(0);
-                }
-                const std::vector<double> promise = promises(errors, h, levels);
-                const std::vector<double> sampled = sampledErrors(mesh, h, levels, 8);
-                for (uint32_t p = 0; p < h.patchCount(); ++p) CHECK(sampled[p] <= promise[p] + 1e-6);
-            }
+            CHECK(worstInMixedStates(mesh, h, numbers) <= 1);
         }
+    }
+}
+
+TEST_CASE("what has vanished is as near to the patch beside it at any of that one's levels") {
+    // Pebbles around a bumpy ball, a part of their own that shares no vertex with it.
+    for (const auto& [size, height] : {std::pair(0.02f, 1.01f), std::pair(0.08f, 1.1f)}) {
+        Model model = bumpy(test::sphere(16), 0.2f);
+        Segmentation parts;
+        parts.facePart.assign(model.triangles.size(), 0);
+        parts.partNames = {"ball", "pebbles"};
+        const std::vector<glm::vec3> ball = model.positions;
+        for (uint32_t i = 0; i < 12; ++i) {
+            append(model, tetrahedron(), ball[(i * 97) % ball.size()] * height, size);
+        }
+        const Mesh mesh = test::welded(model);
+        parts.facePart.resize(mesh.faces.size(), 1);
+        const Topology topology = buildTopology(mesh);
+        const PatchAssignment patches = splitPatches(mesh, topology, parts, 0);
+        const Hierarchy h = buildDefaultHierarchy(mesh, topology, patches, {});
+        Numbers numbers{3};
+        CHECK(worstInMixedStates(mesh, h, numbers) <= 1);
     }
 }
 
@@ -369,7 +401,7 @@ TEST_CASE("the bounds of the thesis's hierarchy are tight") {
     const Mesh mesh = test::welded(bumpy(test::sphere(20), 0.05f));
     const Hierarchy h = buildThesisHierarchy(mesh, buildTopology(mesh), test::slabs(mesh, 3), {});
     REQUIRE(h.levelCount > 3);
-    CHECK(checkBounds(mesh, h, 20) <= 1.2 * 1.25); // with the margin of patches that have neighbours
+    CHECK(checkBounds(mesh, h, 20) <= 1.2);
 }
 
 TEST_CASE("the result does not depend on the threads") {

@@ -4,11 +4,31 @@
 
 namespace xgc::bake {
 
-LevelWalk::LevelWalk(const Mesh& mesh, const Hierarchy& hierarchy)
-    : h_(hierarchy), parent_(hierarchy.positions.size(), kNone), numbers_(hierarchy.positions.size(), kNone) {
-    for (uint32_t w = 0; w < h_.wedgePosition.size(); ++w) {
-        if (h_.wedgeParent[w] != kNone) parent_[h_.wedgePosition[w]] = h_.wedgePosition[h_.wedgeParent[w]];
+std::vector<uint32_t> positionParents(const Hierarchy& h) {
+    std::vector<uint32_t> parents(h.positions.size(), kNone);
+    for (uint32_t w = 0; w < h.wedgePosition.size(); ++w) {
+        if (h.wedgeParent[w] != kNone) parents[h.wedgePosition[w]] = h.wedgePosition[h.wedgeParent[w]];
     }
+    return parents;
+}
+
+void listStars(DrawnLevel& d) {
+    d.starOffsets.assign(d.points.size() + 1, 0);
+    for (const glm::uvec3& t : d.triangles) {
+        for (int k = 0; k < 3; ++k) ++d.starOffsets[t[k] + 1];
+    }
+    for (size_t v = 1; v < d.starOffsets.size(); ++v) d.starOffsets[v] += d.starOffsets[v - 1];
+    d.stars.resize(d.triangles.size() * 3);
+    // Offsets move on to each star's end while it fills, and back.
+    for (uint32_t t = 0; t < d.count(); ++t) {
+        for (int k = 0; k < 3; ++k) d.stars[d.starOffsets[d.triangles[t][k]]++] = t;
+    }
+    for (size_t v = d.starOffsets.size() - 1; v > 0; --v) d.starOffsets[v] = d.starOffsets[v - 1];
+    d.starOffsets[0] = 0;
+}
+
+LevelWalk::LevelWalk(const Mesh& mesh, const Hierarchy& hierarchy)
+    : h_(hierarchy), parent_(positionParents(hierarchy)), numbers_(hierarchy.positions.size(), kNone) {
     // Level 0: the faces that are not degenerate, all of them in a welded mesh.
     for (uint32_t f = 0; f < mesh.faceCount(); ++f) {
         drawn_.triangles.push_back(mesh.facePositions(f));
@@ -78,16 +98,7 @@ void LevelWalk::keepTriangles(const std::vector<uint32_t>& representatives) {
 
 void LevelWalk::findNeighbours() {
     DrawnLevel& d = drawn_;
-    d.starOffsets.assign(d.points.size() + 1, 0);
-    for (const glm::uvec3& t : d.triangles) {
-        for (int k = 0; k < 3; ++k) ++d.starOffsets[t[k] + 1];
-    }
-    for (size_t v = 1; v < d.starOffsets.size(); ++v) d.starOffsets[v] += d.starOffsets[v - 1];
-    d.stars.resize(d.triangles.size() * 3);
-    std::vector<uint32_t> next(d.starOffsets.begin(), d.starOffsets.end() - 1);
-    for (uint32_t t = 0; t < d.count(); ++t) {
-        for (int k = 0; k < 3; ++k) d.stars[next[d.triangles[t][k]]++] = t;
-    }
+    listStars(d);
     d.beside.resize(d.triangles.size());
     for (uint32_t t = 0; t < d.count(); ++t) {
         for (int k = 0; k < 3; ++k) {

@@ -30,6 +30,12 @@ struct DrawnLevel {
     }
 };
 
+/// Position that each position collapses into; kNone for those that never do.
+std::vector<uint32_t> positionParents(const Hierarchy& hierarchy);
+
+/// Fills `starOffsets` and `stars` from the triangles.
+void listStars(DrawnLevel& drawn);
+
 /// Goes through the uniform states of a hierarchy in turn.
 class LevelWalk {
 public:
@@ -44,7 +50,7 @@ private:
     void findNeighbours();
 
     const Hierarchy& h_;
-    std::vector<uint32_t> parent_;  ///< position that each position collapses into
+    const std::vector<uint32_t> parent_;
     std::vector<uint32_t> numbers_; ///< vertex of each position, kNone; scratch
     uint32_t level_ = 0;
     DrawnLevel drawn_;

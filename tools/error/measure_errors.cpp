@@ -1,6 +1,7 @@
 #include "coverage.h"
 #include "direct_bound.h"
 #include "drawn_level.h"
+#include "mixed_states.h"
 
 #include <xgc/bake/error.h>
 
@@ -11,9 +12,8 @@ namespace {
 
 constexpr double kFloor = 1e-7; ///< of the diagonal: distances too small to care about
 constexpr uint32_t kDirectChunk = 32;
-/// Times what a patch with neighbours measures in uniform states: beside patches at other levels its boundary stands
-/// elsewhere. Chosen by sampling, not proved.
-constexpr double kMixedMargin = 1.25;
+/// Times what a patch with neighbours measures: of the states in which levels differ only some are tried.
+constexpr double kMixedMargin = 1.05;
 
 double diagonal(const Mesh& mesh) {
     glm::dvec3 low(INFINITY), high(-INFINITY);
@@ -44,32 +44,38 @@ class Measurement {
 public:
     Measurement(const Mesh& mesh, const Topology& topology, const Hierarchy& hierarchy)
         : input_{mesh, topology, hierarchy, std::pow(kFloor * diagonal(mesh), 2)}, walk_(mesh, hierarchy),
-          map_(input_, walk_.drawn()), paths_(input_, map_), coverage_(input_, map_, paths_), inputTarget_(input_),
-          errors_(hierarchy.patchCount(), 0.0), diagonal_(diagonal(mesh)) {}
+          map_(input_, walk_.drawn()), mixed_(input_, map_, walk_.drawn()), paths_(input_, map_),
+          coverage_(input_, map_, paths_), inputTarget_(input_),
+          errors_(1, std::vector<double>(hierarchy.patchCount(), 0.0)), diagonal_(diagonal(mesh)) {}
 
-    /// Squared errors of the next level.
-    const std::vector<double>& advance() {
-        ++level_;
-        if (!walk_.advance()) return errors_;
+    /// Measures the next level; may raise the errors of those before.
+    void advance() {
+        const auto level = uint32_t(errors_.size());
+        errors_.push_back(errors_.back());
+        if (!walk_.advance()) return;
         const DrawnLevel& drawn = walk_.drawn();
+        std::vector<double>& errors = errors_.back();
         if (drawn.count() == 0) { // nothing is drawn: no distance would do
-            errors_.assign(errors_.size(), diagonal_ * diagonal_);
-            return errors_;
+            errors.assign(errors.size(), diagonal_ * diagonal_);
+            return;
         }
         std::vector<uint8_t> isDrawnComponent(input_.topology.componentCount, 0);
         for (const uint32_t f : drawn.faces) isDrawnComponent[input_.topology.faceComponent[f]] = 1;
-        map_.advance(level_, drawn, isDrawnComponent, errors_);
-        paths_.advance(level_, drawn, isDrawnComponent, errors_);
-        coverage_.advance(level_, drawn, isDrawnComponent, errors_);
-        measureLoose(drawn);
-        measureStrained(drawn);
-        measureBare(drawn);
-        return errors_;
+        map_.advance(level, drawn, isDrawnComponent, errors);
+        paths_.advance(level, drawn, isDrawnComponent, errors);
+        coverage_.advance(level, drawn, isDrawnComponent, errors);
+        measureLoose(drawn, errors);
+        measureStrained(drawn, errors);
+        measureBare(drawn, errors);
+        mixed_.advance(drawn, isDrawnComponent, errors_);
     }
+
+    /// Squared, a patch each, for the levels measured.
+    const std::vector<std::vector<double>>& errors() const { return errors_; }
 
 private:
     /// From faces whose image is unknown to the drawn surface.
-    void measureLoose(const DrawnLevel& drawn) {
+    void measureLoose(const DrawnLevel& drawn, std::vector<double>& errors) {
         const DrawnTarget target(drawn);
         const std::vector<uint32_t>& faces = coverage_.looseFaces();
         const auto measure = [&](RunningErrors& running, uint32_t, uint32_t first, uint32_t last) {
@@ -78,11 +84,11 @@ private:
                 measureFace(faces[i], bound, running);
             }
         };
-        forChunks(faces.size(), errors_, measure, kDirectChunk);
+        forChunks(faces.size(), errors, measure, kDirectChunk);
     }
 
     /// Faces whose image is known but far: from the face to the drawn surface, and from the image to the input.
-    void measureStrained(const DrawnLevel& drawn) {
+    void measureStrained(const DrawnLevel& drawn, std::vector<double>& errors) {
         const std::vector<uint32_t>& faces = coverage_.strainedFaces();
         if (faces.empty()) return;
         const DrawnTarget surface(drawn);
@@ -96,7 +102,7 @@ private:
                 }
             }
         };
-        forChunks(faces.size(), errors_, measure, kDirectChunk);
+        forChunks(faces.size(), errors, measure, kDirectChunk);
     }
 
     void measureFace(uint32_t face, DirectBound& bound, RunningErrors& running) const {
@@ -107,7 +113,7 @@ private:
     }
 
     /// From drawn triangles that are not known to be covered to the input.
-    void measureBare(const DrawnLevel& drawn) {
+    void measureBare(const DrawnLevel& drawn, std::vector<double>& errors) {
         std::vector<uint8_t> wasMeasured(drawn.count(), 0);
         for (uint32_t t = 0; t < measured_.size(); ++t) {
             const uint32_t now = drawn.newTriangle[t];
@@ -136,19 +142,19 @@ private:
                                               {hints[0], hints[1], hints[2]}, running.of(patch)));
             }
         };
-        forChunks(bare.size(), errors_, measure, kDirectChunk);
+        forChunks(bare.size(), errors, measure, kDirectChunk);
     }
 
     const MeasuredInput input_;
     LevelWalk walk_;
     TrackedMap map_;
+    MixedStates mixed_;
     EdgePaths paths_;
     Coverage coverage_;
     InputTarget inputTarget_;
-    std::vector<double> errors_; ///< squared, per patch
+    std::vector<std::vector<double>> errors_; ///< by level
     std::vector<uint8_t> measured_;
     const double diagonal_;
-    uint32_t level_ = 0;
 };
 
 } // namespace
@@ -161,11 +167,14 @@ PatchErrors measureErrors(const Mesh& mesh, const Topology& topology, const Hier
     const std::vector<double> margin = margins(hierarchy);
     Measurement measurement(mesh, topology, hierarchy);
     for (uint32_t level = 1; level < levelCount; ++level) {
-        const std::vector<double>& squared = measurement.advance();
-        for (uint32_t p = 0; p < patchCount; ++p) {
-            errors.values[size_t(p) * levelCount + level] = roundedUp(std::sqrt(squared[p]) * margin[p]);
-        }
+        measurement.advance();
         if (progress && !progress(double(level) / (levelCount - 1))) break;
+    }
+    const std::vector<std::vector<double>>& squared = measurement.errors();
+    for (uint32_t level = 1; level < squared.size(); ++level) {
+        for (uint32_t p = 0; p < patchCount; ++p) {
+            errors.values[size_t(p) * levelCount + level] = roundedUp(std::sqrt(squared[level][p]) * margin[p]);
+        }
     }
     return errors;
 }

@@ -51,7 +51,8 @@ public:
             interiors_.emplace_back(state_, attributes_, p, options.placement);
         boundary_ = std::make_unique<BoundaryCollapser>(state_, attributes_, interiors_, options.placement);
         vanisher_ = std::make_unique<ComponentVanisher>(
-            topology, state_, square(levelError(options.firstError * state_.diagonal, options.maxLevels)));
+            topology, assignment.facePatch, state_,
+            square(levelError(options.firstError * state_.diagonal, options.maxLevels)));
     }
 
     CollapseCounts buildLevel(uint32_t level, double squaredError) {

@@ -21,7 +21,9 @@ uint32_t findRoot(std::vector<uint32_t>& parent, uint32_t i) {
 
 } // namespace
 
-ComponentVanisher::ComponentVanisher(const Topology& topology, SurfaceState& state, double limit) : state_(state) {
+ComponentVanisher::ComponentVanisher(const Topology& topology, std::span<const uint32_t> facePatch, SurfaceState& state,
+                                     double limit)
+    : state_(state), facePatch_(facePatch) {
     if (topology.componentCount < 2) return;
     group(topology);
     if (first_.size() > 2) price(limit);
@@ -96,34 +98,53 @@ void ComponentVanisher::price(double limit) {
             if (price * scale > limit) break;
             price = std::max(price, surface.nearest(glm::dvec3(mesh.positions[p]), price, limit, larger).squared);
         }
-        if (price * scale <= limit) waiting_.push_back({price * scale, c});
+        if (price * scale > limit) continue;
+        waiting_.push_back({price * scale, c, carriersOf(c, price, surface, larger)});
     }
     std::sort(waiting_.begin(), waiting_.end(), [](const Component& a, const Component& b) {
         return a.price != b.price ? a.price > b.price : a.number > b.number;
     });
 }
 
+/// The component's own patches, and others only where those do not lie within `price`.
+uint32_t ComponentVanisher::carriersOf(uint32_t component, double price, const SurfaceDistance& surface,
+                                       const std::function<bool(uint32_t)>& counts) {
+    uint32_t carriers = state_.domain[positionsOf(component).front()];
+    for (const uint32_t p : positionsOf(component)) carriers = state_.domains.unite(carriers, state_.domain[p]);
+    for (const uint32_t p : positionsOf(component)) {
+        const glm::dvec3 point(state_.mesh.positions[p]);
+        const auto carries = [&](uint32_t triangle) {
+            return state_.domains.has(carriers, facePatch_[triangle]) && counts(triangle);
+        };
+        if (surface.nearest(point, price, price, carries).squared <= price) continue;
+        if (state_.domains[carriers].size() >= kWidestDomain) break;
+        const SurfaceDistance::Hit hit = surface.nearest(point, 0, price, counts);
+        carriers = state_.domains.unite(carriers, state_.domains.single(facePatch_[hit.triangle]));
+    }
+    return carriers;
+}
+
 uint32_t ComponentVanisher::run(uint32_t level, double limit) {
     uint32_t gone = 0;
     while (!waiting_.empty() && waiting_.back().price <= limit) {
-        vanish(waiting_.back().number, level);
+        vanish(waiting_.back(), level);
         waiting_.pop_back();
         ++gone;
     }
     return gone;
 }
 
-void ComponentVanisher::vanish(uint32_t component, uint32_t level) {
+void ComponentVanisher::vanish(const Component& component, uint32_t level) {
     std::vector<uint32_t> alive;
     uint32_t target = kNone;
-    for (uint32_t p : positionsOf(component)) {
+    for (uint32_t p : positionsOf(component.number)) {
         while (state_.parent[p] != kNone) p = state_.parent[p];
         alive.push_back(p);
     }
     std::sort(alive.begin(), alive.end());
     alive.erase(std::unique(alive.begin(), alive.end()), alive.end());
     target = alive.front();
-    uint32_t domain = state_.domain[target];
+    uint32_t domain = component.carriers;
     for (const uint32_t v : alive) domain = state_.domains.unite(domain, state_.domain[v]);
     if (state_.domains[domain].size() > kWidestDomain) return;
     state_.domain[target] = domain;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bake/surface_distance.h"
 #include "hierarchy/surface_state.h"
 
 namespace xgc::bake {
@@ -9,10 +10,13 @@ namespace xgc::bake {
 ///
 /// The price is the distance from the component to those larger than it, which stay longer, and at least
 /// its radius: what is larger than the error is seen, however near something else lies. The largest one stays.
+///
+/// What lies near a component that is gone stands for it. The patches of that are in the step's domain too: they are
+/// adjacent to the component's patches then, and none of them is finer than the level while the component is gone.
 class ComponentVanisher {
 public:
     /// `limit`: the largest squared error that will be asked for.
-    ComponentVanisher(const Topology& topology, SurfaceState& state, double limit);
+    ComponentVanisher(const Topology& topology, std::span<const uint32_t> facePatch, SurfaceState& state, double limit);
 
     /// Returns how many went. `limit`: squared error.
     uint32_t run(uint32_t level, double limit);
@@ -21,16 +25,20 @@ private:
     struct Component {
         double price; ///< squared length
         uint32_t number;
+        uint32_t carriers; ///< domain: its patches, and those of what stands for it
     };
 
     void group(const Topology& topology);
     void price(double limit);
-    void vanish(uint32_t component, uint32_t level);
+    uint32_t carriersOf(uint32_t component, double price, const SurfaceDistance& surface,
+                        const std::function<bool(uint32_t)>& counts);
+    void vanish(const Component& component, uint32_t level);
     std::span<const uint32_t> positionsOf(uint32_t component) const {
         return std::span(positions_).subspan(first_[component], first_[component + 1] - first_[component]);
     }
 
     SurfaceState& state_;
+    std::span<const uint32_t> facePatch_;
     std::vector<uint32_t> componentOf_; ///< a position
     std::vector<uint32_t> first_, positions_;
     std::vector<Component> waiting_; ///< those that may go, cheapest last
