@@ -253,19 +253,33 @@ TEST_CASE("header and sections: each rule is enforced") {
         };
     };
     expect(StatusCode::notAnAsset, "do not start", header([](FileHeader& h) { h.magic[0] = 'x'; }));
-    expect(StatusCode::badVersion, "another format version", header([](FileHeader& h) { h.version = 2; }));
+    expect(StatusCode::badVersion, "another format version",
+           header([](FileHeader& h) { h.version = format::kVersion + 1; }));
     expect(StatusCode::unsupported, "flags", header([](FileHeader& h) { h.flags = 1; }));
     expect(StatusCode::truncated, "within its tables", header([](FileHeader& h) { h.tableBytes = 1u << 30; }));
     expectCorrupt("sizes in the header", header([](FileHeader& h) { h.fileBytes = 64; }));
     expectCorrupt("sizes in the header", header([](FileHeader& h) { h.sectionCount = 0xffffffff; }));
-    expectCorrupt("not in order", section(SectionId::bands, [](SectionRecord& s) { s.id = SectionId::levels; }));
-    expectCorrupt("does not start behind", section(SectionId::bands, [](SectionRecord& s) { s.offset += 64; }));
+    expectCorrupt("not in order", section(SectionId::domains, [](SectionRecord& s) { s.id = SectionId::levels; }));
+    expectCorrupt("does not start behind", section(SectionId::domains, [](SectionRecord& s) { s.offset += 64; }));
     expectCorrupt("reaches past", section(SectionId::provenance, [](SectionRecord& s) { s.storedBytes = ~0ull - 64; }));
-    expectCorrupt("another size", section(SectionId::bands, [](SectionRecord& s) { s.count += 1; }));
-    expectCorrupt("another size", section(SectionId::bands, [](SectionRecord& s) { s.stride = 8; }));
+    expectCorrupt("another size", section(SectionId::domains, [](SectionRecord& s) { s.count += 1; }));
+    expectCorrupt("another size", section(SectionId::domains, [](SectionRecord& s) { s.stride = 8; }));
     expect(StatusCode::unsupported, "compressed",
-           section(SectionId::bands, [](SectionRecord& s) { s.codec = Codec::zstd; }));
+           section(SectionId::domains, [](SectionRecord& s) { s.codec = Codec::zstd; }));
 }
+
+namespace {
+
+/// The first patch that has a second face list.
+uint32_t patchWithLists(const AssetView& v) {
+    for (uint32_t p = 0; p < v.patchCount(); ++p) {
+        if (v.record->listCount > 1 && v.listsOf(p)[1].faceCount > 0) return p;
+    }
+    FAIL("no patch has a second face list");
+    return 0;
+}
+
+} // namespace
 
 TEST_CASE("tables: each rule is enforced") {
     const auto asset = [](auto change) { return record<AssetRecord>(SectionId::asset, 0, change); };
@@ -280,7 +294,18 @@ TEST_CASE("tables: each rule is enforced") {
     expectCorrupt("another count of faces", asset([](AssetRecord& r) { r.faceCount += 1; }));
     expectCorrupt("not finite", asset([](AssetRecord& r) { r.sphereRadius = kNaN; }));
     expectCorrupt("level with an error", record<LevelRecord>(SectionId::levels, 1, [](auto& r) { r.maxError = kNaN; }));
-    expectCorrupt("death level out of range", record<uint32_t>(SectionId::bands, 0, [](auto& b) { b = 256; }));
+    const auto list = [](size_t index, auto change) { return record<FaceList>(SectionId::faceLists, index, change); };
+    const uint32_t lists = plain().asset.record->listCount;
+    const uint32_t second = patchWithLists(plain().asset) * lists + 1;
+    expectCorrupt("face list count", asset([](AssetRecord& r) { r.listCount = 0; }));
+    expectCorrupt("another count", asset([](AssetRecord& r) { r.listCount += 1; }));
+    expectCorrupt("not that of level 0", list(lists, [](FaceList& l) { l.level = 1; }));
+    expectCorrupt("not that of level 0", list(lists, [](FaceList& l) { l.faceCount -= 1; }));
+    expectCorrupt("levels do not rise", list(second, [](FaceList& l) { l.level = 0; }));
+    expectCorrupt("levels do not rise", list(second, [](FaceList& l) { l.level = 4; }));
+    expectCorrupt("lists that grow", list(second, [](FaceList& l) { l.level = kNever; }));
+    expectCorrupt("lists that grow", list(second, [](FaceList& l) { l.faceCount = 1u << 20; }));
+    expectCorrupt("do not end at its count", list(second, [](FaceList& l) { l.faceCount -= 1; }));
     expectCorrupt("wrong run of patches",
                   record<DomainRecord>(SectionId::domains, 1, [](auto& d) { d.firstPatch += 1; }));
     expectCorrupt("out of order or range", record<uint32_t>(SectionId::domainPatches, 1, [](auto& p) { p = 3; }));
@@ -289,12 +314,12 @@ TEST_CASE("tables: each rule is enforced") {
     expectCorrupt("part or material", patch([](PatchRecord& r) { r.material = 1; }));
     expectCorrupt("wrong run of domains", patch([](PatchRecord& r) { r.firstDomain += 1; }));
     expectCorrupt("slot count", patch([](PatchRecord& r) { r.slotCount -= 1; }));
-    expectCorrupt("first face", patch([](PatchRecord& r) { r.firstFace += 1; }));
-    expectCorrupt("first face", patch([](PatchRecord& r) { r.firstCorner -= 3; }));
-    expectCorrupt("first face", patch([](PatchRecord& r) { r.firstParent += 1; }));
+    expectCorrupt("first corner", patch([](PatchRecord& r) { r.firstCorner -= 3; }));
+    expectCorrupt("first corner", patch([](PatchRecord& r) { r.firstParent += 1; }));
     expect(StatusCode::unsupported, "unknown flags", patch([](PatchRecord& r) { r.flags |= 2; }));
-    expectCorrupt("first face", patch([](PatchRecord& r) { r.flags |= kWideSlots; }));
-    expectCorrupt("bands that do not end", patch([](PatchRecord& r) { r.interiorFaceCount += 1; }));
+    expectCorrupt("first corner", patch([](PatchRecord& r) { r.flags |= kWideSlots; }));
+    expectCorrupt("not that of level 0", patch([](PatchRecord& r) { r.faceCount += 1; }));
+    expectCorrupt("do not end at its count", patch([](PatchRecord& r) { r.listedFaceCount += 1; }));
     expectCorrupt("bounds that are not finite", patch([](PatchRecord& r) { r.boxMin[2] = kNaN; }));
     expectCorrupt("normal cone", patch([](PatchRecord& r) { r.coneCosine = 2; }));
     expectCorrupt("normal cone", patch([](PatchRecord& r) { r.coneLevel = 4; }));
@@ -348,11 +373,17 @@ TEST_CASE("pages: each rule is enforced") {
     REQUIRE(v.collapseLevels[last] != kNever);
     expectCorrupt("wrong parent slot", parent(lastSlot, lastSlot));
     expectCorrupt("wrong parent slot", parent(lastSlot - 1, lastSlot));
-    expectCorrupt("three corners", stream(v.streams.size() - 2, [](auto& s) {
+    expectCorrupt("three corners", stream(v.streams.size() - 1, [](auto& s) {
                       s.count -= 1, s.stride = 2, s.storedBytes -= 2, s.rawBytes -= 2;
                   }));
     expectCorrupt("corner past", element<uint16_t>(StreamKind::cornerNarrow, 3, [](auto& c) { c = 65535; }));
-    expectCorrupt("death level outside", element<uint8_t>(StreamKind::death, 0, [](auto& d) { d = 0; }));
+    // The second list of a patch names no interior slot that is dead at its level, as the last one is at any.
+    const uint32_t p = patchWithLists(v);
+    REQUIRE(v.collapseLevels[v.interiorRange(p).first + v.interiorRange(p).count - 1] == 1);
+    const auto dead = uint16_t(v.patches[p].slotCount - 1);
+    expectCorrupt("corner past",
+                  element<uint16_t>(StreamKind::cornerNarrow, v.patches[p].firstCorner + 3 * v.patches[p].faceCount,
+                                    [=](auto& c) { c = dead; }));
 }
 
 TEST_CASE("a genealogy on which patches differ, or that leaves the domain, is refused") {

@@ -5,7 +5,6 @@
 #include <doctest/doctest.h>
 
 #include <array>
-#include <set>
 
 using namespace xgc;
 using namespace xgc::bake;
@@ -59,7 +58,7 @@ std::vector<Triangle> drawnByRuntime(const Baked& b, const std::vector<uint32_t>
     std::vector<uint32_t> scratch(scratchCapacity(b.asset));
     std::vector<Triangle> triangles;
     for (uint32_t p = 0; p < b.asset.patchCount(); ++p) {
-        std::vector<uint32_t> out(indexCapacity(b.asset, p, levels[p]));
+        std::vector<uint32_t> out(indexCapacity(b.asset, p, levels));
         const uint32_t count = buildIndices(b.asset, p, levels, scratch, out);
         REQUIRE(count <= out.size());
         for (uint32_t i = 0; i < count; i += 3) {
@@ -153,13 +152,6 @@ TEST_CASE("patches of narrow and of wide slots stand side by side") {
     checkAllStates(b);
 }
 
-TEST_CASE("locked boundaries leave no face to test") {
-    ToyOptions options;
-    options.lockBoundaries = true;
-    const Baked b = bakeToy(test::sphere(8), 5, options);
-    for (const format::PatchRecord& patch : b.asset.patches) CHECK(patch.boundaryFaceCount == 0);
-}
-
 TEST_CASE("uniform face counts of the levels are those that are drawn") {
     for (const bool lock : {false, true}) {
         ToyOptions options;
@@ -172,30 +164,34 @@ TEST_CASE("uniform face counts of the levels are those that are drawn") {
     }
 }
 
-TEST_CASE("a death level is the first at which the face is degenerate whatever the neighbours do") {
+TEST_CASE("a face list is what its patch draws with all patches at the list's level, in fewer and fewer faces") {
     ToyOptions options;
-    options.levelCount = 4;
-    const Baked b = bakeToy(test::sphere(4), 3, options);
+    options.levelCount = 12;
+    options.share = 0.25f;
+    const Baked b = bakeToy(test::sphere(24), 5, options);
     const uint32_t patches = b.asset.patchCount();
-    // alive[patch][level]: faces that some state with this level of the patch draws.
-    std::vector<std::vector<std::set<uint32_t>>> alive(patches, std::vector<std::set<uint32_t>>(4));
-    for (uint32_t state = 0; state < 64; ++state) {
-        const std::array<uint8_t, 3> levels = {uint8_t(state & 3), uint8_t(state >> 2 & 3), uint8_t(state >> 4)};
-        for (const uint32_t f : drawSurface(b.mesh, b.hierarchy, levels).face) {
-            const uint32_t p = b.hierarchy.facePatch[f];
-            alive[p][levels[p]].insert(f);
-        }
+    std::vector<std::vector<uint32_t>> drawn(b.asset.levelCount(), std::vector<uint32_t>(patches));
+    for (uint32_t level = 0; level < b.asset.levelCount(); ++level) {
+        const std::vector<uint8_t> levels(patches, uint8_t(level));
+        for (const uint32_t f : drawSurface(b.mesh, b.hierarchy, levels).face) ++drawn[level][b.hierarchy.facePatch[f]];
     }
+    uint32_t coarse = 0;
     for (uint32_t p = 0; p < patches; ++p) {
-        const format::PatchRecord& r = b.asset.patches[p];
-        for (uint32_t level = 0; level < 4; ++level) {
-            uint32_t living = 0;
-            for (uint32_t i = 0; i < r.interiorFaceCount + r.boundaryFaceCount; ++i) {
-                living += b.asset.deaths[r.firstFace + i] > level;
+        for (uint32_t level = 0; level < b.asset.levelCount(); ++level) {
+            const std::vector<uint8_t> levels(patches, uint8_t(level));
+            uint32_t listed = 0;
+            for (const format::FaceList& list : b.asset.listsOf(p)) {
+                if (list.level > level) continue;
+                listed = list.faceCount;
+                coarse += list.level == level && level > 0;
+                if (list.level == level) CHECK(listed == drawn[level][p]);
             }
-            CHECK(living == alive[p][level].size());
+            CHECK(indexCapacity(b.asset, p, levels) == 3 * listed);
+            // Lists are short: not many faces are passed over.
+            CHECK((listed < 6 * drawn[level][p] || listed <= 16));
         }
     }
+    CHECK(coarse >= 2 * patches);
 }
 
 TEST_CASE("bounds contain every triangle of every state, and cones every normal up to their level") {

@@ -286,12 +286,12 @@ Bytes withCodes(const StreamAttack& attack, std::mt19937& random) {
 TEST_CASE("altered codes of every stream stay within the buffers, and what opens of them draws") {
     test::ToyOptions options;
     options.wedgeIdsAsUvs = false;
-    const test::ToyAsset a = test::toyAsset(decorated(test::sphere(8)), 3, options);
+    const test::ToyAsset a = test::toyAsset(decorated(test::sphere(9)), 3, options);
     REQUIRE_MESSAGE(a.error.empty(), a.error);
     const Bytes file = compressedOf(a.bytes);
     std::mt19937 random(7);
     for (const StreamKind kind : {StreamKind::position, StreamKind::normal, StreamKind::parentNarrow,
-                                  StreamKind::cornerNarrow, StreamKind::death}) {
+                                  StreamKind::cornerNarrow, StreamKind::collapseLevel}) {
         CAPTURE(uint32_t(kind));
         const StreamAttack attack = findStream(file, kind);
         uint32_t tried = 0, decoded = 0;

@@ -1,4 +1,5 @@
 #include "open.h"
+#include "rows.h"
 
 #include <algorithm>
 #include <cmath>
@@ -145,46 +146,29 @@ Status checkGenealogy(const AssetView& v) {
     return {};
 }
 
+/// Each list names slots of domains, and of the interior those alive at its level alone.
 template <typename Slot>
-bool allBelow(std::span<const Slot> values, uint32_t end) {
-    Slot largest = 0;
-    for (const Slot v : values) largest = std::max(largest, v);
-    return values.empty() || largest < end;
+bool cornersInRange(const AssetView& v, uint32_t p, std::span<const Slot> corners) {
+    const VertexRange interior = v.interiorRange(p);
+    const uint32_t firstInterior = v.patches[p].slotCount - interior.count;
+    for (const FaceList& list : v.listsOf(p)) {
+        const size_t count = 3 * size_t(list.faceCount);
+        Slot largest = 0;
+        for (const Slot c : corners.first(count)) largest = std::max(largest, c);
+        if (count > 0 && largest >= firstInterior + aliveCount(v, interior, list.level)) return false;
+        corners = corners.subspan(count);
+    }
+    return true;
 }
 
 Status checkCorners(const AssetView& v) {
     for (uint32_t p = 0; p < v.patches.size(); ++p) {
         const PatchRecord& patch = v.patches[p];
-        const size_t count = 3 * (size_t(patch.interiorFaceCount) + patch.boundaryFaceCount);
+        const size_t count = 3 * size_t(patch.listedFaceCount);
         const bool inRange = patch.flags & kWideSlots
-                                 ? allBelow(v.cornersWide.subspan(patch.firstCorner, count), patch.slotCount)
-                                 : allBelow(v.cornersNarrow.subspan(patch.firstCorner, count), patch.slotCount);
-        if (!inRange) return corrupt("patch with a corner past its slots", p);
-    }
-    return {};
-}
-
-/// Deaths of a run lie within those of its band.
-bool deathsWithin(std::span<const uint8_t> deaths, uint32_t least, uint32_t most) {
-    return std::all_of(deaths.begin(), deaths.end(), [&](uint8_t d) { return d >= least && d <= most; });
-}
-
-Status checkDeaths(const AssetView& v) {
-    for (uint32_t p = 0; p < v.patches.size(); ++p) {
-        const PatchRecord& patch = v.patches[p];
-        const size_t boundary = patch.firstFace + size_t(patch.interiorFaceCount);
-        BandEnd start{};
-        uint32_t most = kNever;
-        for (uint32_t b = 0; b < v.record->bandCount; ++b) {
-            const BandEnd end = v.patchBands[size_t(p) * v.record->bandCount + b];
-            const auto interiors =
-                v.deaths.subspan(patch.firstFace + size_t(start.interior), end.interior - start.interior);
-            const auto boundaries = v.deaths.subspan(boundary + start.boundary, end.boundary - start.boundary);
-            if (!deathsWithin(interiors, v.bands[b], most) || !deathsWithin(boundaries, v.bands[b], most))
-                return corrupt("patch with a death level outside its band", p);
-            start = end;
-            most = v.bands[b] - 1;
-        }
+                                 ? cornersInRange(v, p, v.cornersWide.subspan(patch.firstCorner, count))
+                                 : cornersInRange(v, p, v.cornersNarrow.subspan(patch.firstCorner, count));
+        if (!inRange) return corrupt("patch with a corner past the slots of its list", p);
     }
     return {};
 }
@@ -192,7 +176,7 @@ Status checkDeaths(const AssetView& v) {
 } // namespace
 
 Status checkPage(const AssetView& view) {
-    for (Status (*check)(const AssetView&) : {checkPositions, checkLevels, checkGenealogy, checkCorners, checkDeaths}) {
+    for (Status (*check)(const AssetView&) : {checkPositions, checkLevels, checkGenealogy, checkCorners}) {
         if (Status s = check(view); !s.ok()) return s;
     }
     return {};

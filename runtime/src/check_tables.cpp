@@ -29,11 +29,10 @@ Status checkCounts(const AssetView& v) {
     if (r.tierCount != 1 || r.pageGroupCount != 1)
         return unsupported("the asset has several tiers or page groups; bake it with this version");
     if (r.levelCount == 0 || r.levelCount > kMaxLevels) return corrupt("level count out of range", r.levelCount);
-    if (r.bandCount == 0 || r.bandCount > kMaxBands) return corrupt("band count out of range", r.bandCount);
+    if (r.listCount == 0 || r.listCount > kMaxFaceLists) return corrupt("face list count out of range", r.listCount);
     if (r.materialCount == 0 || r.partCount == 0 || r.patchCount == 0)
         return corrupt("the asset has no material, part or patch");
     if (v.levels.size() != r.levelCount) return corrupt("section levels has another count than the asset");
-    if (v.bands.size() != r.bandCount) return corrupt("section bands has another count than the asset");
     if (v.domains.size() != r.domainCount) return corrupt("section domains has another count than the asset");
     if (v.patches.size() != r.patchCount) return corrupt("section patches has another count than the asset");
     if (v.parts.size() != r.partCount) return corrupt("section parts has another count than the asset");
@@ -43,8 +42,8 @@ Status checkCounts(const AssetView& v) {
         return corrupt("section vertexRanges has another count than domains and patches");
     if (v.patchErrors.size() != uint64_t(r.patchCount) * r.levelCount)
         return corrupt("section patchErrors has another count than patches times levels");
-    if (v.patchBands.size() != uint64_t(r.patchCount) * r.bandCount)
-        return corrupt("section patchBands has another count than patches times bands");
+    if (v.faceLists.size() != uint64_t(r.patchCount) * r.listCount)
+        return corrupt("section faceLists has another count than patches times lists");
     if (v.patchSlots.size() != v.patchDomains.size())
         return corrupt("section patchSlots has another count than patchDomains");
     if (r.baseVertexCount > r.vertexCount || r.positionCount > r.baseVertexCount)
@@ -61,14 +60,6 @@ Status checkLevels(const AssetView& v) {
         if (!std::isfinite(level.threshold) || !std::isfinite(level.maxError))
             return corrupt("level with an error that is not finite", i);
         if (level.faceCount > v.record->faceCount) return corrupt("level with more faces than the asset", i);
-    }
-    return {};
-}
-
-Status checkBands(const AssetView& v) {
-    for (size_t i = 0; i < v.bands.size(); ++i) {
-        if (v.bands[i] == 0 || v.bands[i] > kNever) return corrupt("band with a death level out of range", i);
-        if (i > 0 && v.bands[i] >= v.bands[i - 1]) return corrupt("band that does not fall", i);
     }
     return {};
 }
@@ -124,15 +115,20 @@ Status checkPatchDomains(const AssetView& v, uint32_t p) {
     return {};
 }
 
-Status checkPatchBands(const AssetView& v, uint32_t p) {
-    const std::span<const BandEnd> ends = v.patchBands.subspan(size_t(p) * v.record->bandCount, v.record->bandCount);
-    for (size_t b = 1; b < ends.size(); ++b) {
-        if (ends[b].interior < ends[b - 1].interior || ends[b].boundary < ends[b - 1].boundary)
-            return corrupt("patch with bands that do not rise", p);
+Status checkFaceLists(const AssetView& v, uint32_t p) {
+    const std::span<const FaceList> lists = v.listsOf(p);
+    if (lists[0].level != 0 || lists[0].faceCount != v.patches[p].faceCount)
+        return corrupt("patch whose first face list is not that of level 0", p);
+    uint64_t faces = lists[0].faceCount;
+    for (size_t i = 1; i < lists.size(); ++i) {
+        const FaceList &list = lists[i], &before = lists[i - 1];
+        const bool rises = list.level > before.level && list.level < v.record->levelCount;
+        if (list.level != kNever && !rises) return corrupt("patch with face lists whose levels do not rise", p);
+        const bool falls = list.faceCount <= before.faceCount;
+        if (list.level == kNever ? list.faceCount != 0 : !falls) return corrupt("patch with face lists that grow", p);
+        faces += list.faceCount;
     }
-    if (ends.back().interior != v.patches[p].interiorFaceCount ||
-        ends.back().boundary != v.patches[p].boundaryFaceCount)
-        return corrupt("patch with bands that do not end at its face counts", p);
+    if (faces != v.patches[p].listedFaceCount) return corrupt("patch with face lists that do not end at its count", p);
     return {};
 }
 
@@ -148,7 +144,7 @@ Status checkPatchBounds(const AssetView& v, uint32_t p) {
 
 /// Where the runs of a patch must start.
 struct PatchFirsts {
-    uint64_t domain = 0, face = 0, narrowFace = 0, wideFace = 0, narrowSlot = 0, wideSlot = 0;
+    uint64_t domain = 0, narrowFace = 0, wideFace = 0, narrowSlot = 0, wideSlot = 0;
 };
 
 Status checkPatchRuns(const AssetView& v, uint32_t p, PatchFirsts& next) {
@@ -163,12 +159,10 @@ Status checkPatchRuns(const AssetView& v, uint32_t p, PatchFirsts& next) {
         return corrupt("patch with a wrong run of domains", p);
     uint64_t& nextFace = wide ? next.wideFace : next.narrowFace;
     uint64_t& nextSlot = wide ? next.wideSlot : next.narrowSlot;
-    if (patch.firstFace != next.face || patch.firstCorner != 3 * nextFace || patch.firstParent != nextSlot)
-        return corrupt("patch with a wrong first face, corner or parent", p);
-    const uint64_t faces = uint64_t(patch.interiorFaceCount) + patch.boundaryFaceCount;
+    if (patch.firstCorner != 3 * nextFace || patch.firstParent != nextSlot)
+        return corrupt("patch with a wrong first corner or parent", p);
     next.domain += patch.domainCount;
-    next.face += faces;
-    nextFace += faces;
+    nextFace += patch.listedFaceCount;
     nextSlot += patch.slotCount;
     return {};
 }
@@ -176,19 +170,20 @@ Status checkPatchRuns(const AssetView& v, uint32_t p, PatchFirsts& next) {
 Status checkPatches(const AssetView& v) {
     PatchFirsts next;
     uint32_t maxSlots = 0;
-    uint64_t maxFaces = 0;
+    uint64_t faces = 0, maxFaces = 0;
     for (uint32_t p = 0; p < v.patches.size(); ++p) {
         if (Status s = checkPatchRuns(v, p, next); !s.ok()) return s;
         if (Status s = checkPatchDomains(v, p); !s.ok()) return s;
-        if (Status s = checkPatchBands(v, p); !s.ok()) return s;
+        if (Status s = checkFaceLists(v, p); !s.ok()) return s;
         if (Status s = checkPatchBounds(v, p); !s.ok()) return s;
         maxSlots = std::max(maxSlots, v.patches[p].slotCount);
-        maxFaces = std::max(maxFaces, uint64_t(v.patches[p].interiorFaceCount) + v.patches[p].boundaryFaceCount);
+        maxFaces = std::max(maxFaces, uint64_t(v.patches[p].faceCount));
+        faces += v.patches[p].faceCount;
     }
     if (next.domain != v.patchDomains.size()) return corrupt("section patchDomains holds more than the patches do");
     // Every pair of one side is in the other; equal counts make the two sides the same.
     if (v.patchDomains.size() != v.domainPatches.size()) return corrupt("a domain lists a patch that does not list it");
-    if (next.face != v.record->faceCount) return corrupt("the patches hold another count of faces than the asset");
+    if (faces != v.record->faceCount) return corrupt("the patches hold another count of faces than the asset");
     if (maxSlots != v.record->maxPatchSlots || maxFaces != v.record->maxPatchFaces)
         return corrupt("the asset's capacities are not those of its patches");
     if (3 * maxFaces > UINT32_MAX) return corrupt("a patch has more corners than 32 bits count");
@@ -275,9 +270,8 @@ Status checkPageTable(const AssetView& v) {
 } // namespace
 
 Status checkTables(const AssetView& view) {
-    for (Status (*check)(const AssetView&) :
-         {checkCounts, checkLevels, checkBands, checkDomains, checkRanges, checkPatches, checkErrors, checkParts,
-          checkMaterials, checkNodes, checkPageTable}) {
+    for (Status (*check)(const AssetView&) : {checkCounts, checkLevels, checkDomains, checkRanges, checkPatches,
+                                              checkErrors, checkParts, checkMaterials, checkNodes, checkPageTable}) {
         if (Status s = check(view); !s.ok()) return s;
     }
     return {};

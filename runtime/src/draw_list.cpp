@@ -262,8 +262,7 @@ Status DrawList::Impl::buildRebuilds(const Instance& instance, Levels after) {
     const AssetView& asset = *instance.asset;
     uint64_t needed = 0;
     for (uint32_t i = 0; i < rebuildCount; ++i) {
-        const uint32_t patch = rebuilds[i].patch;
-        needed += indexCapacity(asset, patch, after[patch]);
+        needed += indexCapacity(asset, rebuilds[i].patch, after);
     }
     if (needed > staging.size() - stagingUsed) {
         return needed > staging.size()
@@ -284,7 +283,7 @@ Status DrawList::Impl::buildRebuilds(const Instance& instance, Levels after) {
         Rebuild& r = rebuilds[i];
         r.staging = used;
         const uint32_t count = buildIndices(asset, r.patch, after, {representatives.data(), representatives.size()},
-                                            staging.subspan(used, indexCapacity(asset, r.patch, after[r.patch])));
+                                            staging.subspan(used));
         if (count == 0) continue;
         r.range = arena.allocate(count);
         if (r.range == kNoRange) {

@@ -1,109 +1,155 @@
 #include <xgc/indices.h>
 
+#include "rows.h"
+
 #include <algorithm>
 #include <cassert>
 
-// A patch is drawn in two steps. First every slot gets its representative: the slots of each domain, widest first,
-// then those of the interior. A parent always has a lower slot, and the rows alive at a level are a prefix of
-// each range, so one pass forward resolves all chains:
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
+// A patch is drawn in two steps. First every slot that the faces name gets its representative: the slots of each
+// domain, widest first, then those of the interior. A parent always has a lower slot, and the rows alive at a level
+// are a prefix of each range, so one pass forward resolves all chains:
 //
 //   slots  [ domain a      | domain b   | interior               ]
 //   alive  [ #####.....    | ###....    | ##########............ ]     # : itself   . : rep[parent]
 //
-// Then faces are gathered through `rep`. They lie in bands of falling death level, so those that can be drawn are
-// a prefix too; only the band that holds the level itself mixes dead and living faces and tests death bytes:
+// Then faces are gathered through `rep`, from one of the patch's lists: each holds what the patch draws with all
+// patches at the list's level. A state in which no group of the patch is finer than that only merges more of those
+// vertices, so it draws the faces of the list that do not become degenerate. The coarsest such list is the shortest:
 //
-//   faces  [ band 0  | band 1  | band 2  | band 3 ]
-//            alive     alive     death?    dead
+//   lists  [ level 0                              | level 7      | level 12 ]
+//   least level of the groups: 9                    this one
 //
-// Faces that may touch a boundary can be degenerate before their death level (a domain's level differs from the
-// patch's), so they are always tested.
+// The interior slots that a list names are those alive at its level, so the pass forward ends there. Where nothing
+// has collapsed since that level, all faces of the list are drawn and the interior's rows follow its slots.
 
 namespace xgc {
 namespace {
 
-/// Rows of a range that are alive at a level: collapse levels fall within it.
-uint32_t aliveCount(const AssetView& asset, format::VertexRange range, uint32_t level) {
-    const uint8_t* first = asset.collapseLevels.data() + range.first;
-    return uint32_t(std::partition_point(first, first + range.count, [&](uint8_t c) { return c > level; }) - first);
-}
-
+/// Representatives of the slots of a range, the first of which is `firstSlot`.
 template <typename Slot>
 void resolve(const Slot* parents, uint32_t firstSlot, uint32_t alive, format::VertexRange range, uint32_t* rep) {
-    for (uint32_t k = 0; k < alive; ++k) rep[firstSlot + k] = range.first + k;
-    for (uint32_t k = alive; k < range.count; ++k) rep[firstSlot + k] = rep[parents[firstSlot + k]];
+    uint32_t* own = rep + firstSlot;
+    parents += firstSlot;
+    for (size_t k = 0; k < alive; ++k) own[k] = range.first + uint32_t(k);
+    for (size_t k = alive; k < range.count; ++k) own[k] = rep[parents[k]];
 }
 
-/// Emits faces without a test.
-template <typename Slot>
-uint32_t* emitAll(const Slot* corners, uint32_t first, uint32_t last, const uint32_t* rep, uint32_t* out) {
-    for (uint32_t i = 3 * first; i < 3 * last; ++i) *out++ = rep[corners[i]];
-    return out;
-}
+/// A face list and where it starts among the faces of its patch.
+struct ListedFaces {
+    uint32_t level = 0;
+    uint32_t first = 0;
+    uint32_t count = 0;
+};
 
-/// Emits the faces that are alive by their death byte.
-template <typename Slot>
-uint32_t* emitLiving(const Slot* corners, const uint8_t* deaths, uint32_t first, uint32_t last, uint32_t level,
-                     const uint32_t* rep, uint32_t* out) {
-    for (uint32_t f = first; f < last; ++f) {
-        out[0] = rep[corners[3 * f]];
-        out[1] = rep[corners[3 * f + 1]];
-        out[2] = rep[corners[3 * f + 2]];
-        out += deaths[f] > level ? 3 : 0;
+/// The coarsest list that serves groups at `least` and coarser.
+ListedFaces listFor(const AssetView& asset, uint32_t patch, uint32_t least) {
+    const std::span<const format::FaceList> lists = asset.listsOf(patch);
+    ListedFaces found{0, 0, lists[0].faceCount};
+    for (size_t i = 1; i < lists.size() && lists[i].level <= least; ++i) {
+        found = {lists[i].level, found.first + found.count, lists[i].faceCount};
     }
-    return out;
+    return found;
+}
+
+/// What is known of a patch's domains once they are resolved.
+struct DomainStates {
+    uint32_t slotCount = 0;
+    uint32_t leastLevel = format::kNever;
+    uint32_t coarsestMoved = 0; ///< largest level of those with rows that are not drawn as themselves
+};
+
+template <typename Slot>
+DomainStates resolveDomains(const AssetView& asset, uint32_t patch, Levels levels, const Slot* parents, uint32_t* rep) {
+    DomainStates states;
+    const uint32_t own = levels[patch]; // no domain of the patch is coarser
+    for (const uint32_t domain : asset.domainsOf(patch)) {
+        const format::VertexRange range = asset.domainRange(domain);
+        const uint32_t level = own == 0 ? 0 : domainLevel(asset, domain, levels);
+        const uint32_t alive = level == 0 ? range.count : aliveCount(asset, range, level);
+        resolve(parents, states.slotCount, alive, range, rep);
+        states.slotCount += range.count;
+        states.leastLevel = std::min(states.leastLevel, level);
+        if (alive < range.count) states.coarsestMoved = std::max(states.coarsestMoved, level);
+    }
+    return states;
+}
+
+#ifdef __SSE2__
+
+/// Corners that are written at once.
+constexpr size_t kBlock = 16;
+
+/// Writes a block of slots as rows where all are interior slots, `shift` below their rows; else leaves it.
+bool emitInterior(const uint16_t* slots, uint32_t firstInterior, uint32_t shift, uint32_t* out) {
+    // SSE2 subtracts with saturation but does not compare unsigned numbers: below the first one a slot leaves a rest.
+    const __m128i first = _mm_set1_epi16(int16_t(firstInterior)), added = _mm_set1_epi32(int32_t(shift));
+    const __m128i zero = _mm_setzero_si128();
+    const auto* in = reinterpret_cast<const __m128i*>(slots);
+    const __m128i a = _mm_loadu_si128(in), b = _mm_loadu_si128(in + 1);
+    const __m128i below = _mm_or_si128(_mm_subs_epu16(first, a), _mm_subs_epu16(first, b));
+    if (_mm_movemask_epi8(_mm_cmpeq_epi8(below, zero)) != 0xffff) return false;
+    auto* to = reinterpret_cast<__m128i*>(out);
+    _mm_storeu_si128(to, _mm_add_epi32(_mm_unpacklo_epi16(a, zero), added));
+    _mm_storeu_si128(to + 1, _mm_add_epi32(_mm_unpackhi_epi16(a, zero), added));
+    _mm_storeu_si128(to + 2, _mm_add_epi32(_mm_unpacklo_epi16(b, zero), added));
+    _mm_storeu_si128(to + 3, _mm_add_epi32(_mm_unpackhi_epi16(b, zero), added));
+    return true;
+}
+
+#endif
+
+/// Emits all corners, of which no interior slot is dead. Most blocks of corners are of interior slots alone.
+void emitAll(const uint16_t* corners, size_t count, uint32_t firstInterior, uint32_t shift, const uint32_t* rep,
+             uint32_t* out) {
+    size_t i = 0;
+#ifdef __SSE2__
+    for (; i + kBlock <= count && firstInterior <= UINT16_MAX; i += kBlock) {
+        if (emitInterior(corners + i, firstInterior, shift, out + i)) continue;
+        for (size_t k = i; k < i + kBlock; ++k) out[k] = rep[corners[k]];
+    }
+#endif
+    for (; i < count; ++i) out[i] = rep[corners[i]];
+    (void)firstInterior, (void)shift; // where there is no SSE2
+}
+
+void emitAll(const uint32_t* corners, size_t count, uint32_t, uint32_t, const uint32_t* rep, uint32_t* out) {
+    for (size_t i = 0; i < count; ++i) out[i] = rep[corners[i]];
 }
 
 /// Emits the faces that are not degenerate.
 template <typename Slot>
-uint32_t* emitSolid(const Slot* corners, uint32_t first, uint32_t last, const uint32_t* rep, uint32_t* out) {
-    for (uint32_t f = first; f < last; ++f) {
+uint32_t emitSolid(const Slot* corners, size_t faceCount, const uint32_t* rep, uint32_t* out) {
+    uint32_t* end = out;
+    for (size_t f = 0; f < faceCount; ++f) {
         const uint32_t a = rep[corners[3 * f]], b = rep[corners[3 * f + 1]], c = rep[corners[3 * f + 2]];
-        out[0] = a;
-        out[1] = b;
-        out[2] = c;
-        const bool solid = (a != b) & (b != c) & (c != a);
-        out += solid ? 3 : 0;
+        end[0] = a;
+        end[1] = b;
+        end[2] = c;
+        // By arithmetic: compilers make a branch of a choice, and nothing predicts this one.
+        end += 3 * (uint32_t(a != b) & uint32_t(b != c) & uint32_t(c != a));
     }
-    return out;
-}
-
-/// Ends of the runs of faces that are wholly alive, and that hold all living ones, at a level.
-struct LivingRuns {
-    format::BandEnd whole{};
-    format::BandEnd some{};
-};
-
-LivingRuns livingRuns(const AssetView& asset, uint32_t patch, uint32_t level) {
-    const format::BandEnd* ends = asset.patchBands.data() + size_t(patch) * asset.record->bandCount;
-    LivingRuns runs;
-    uint32_t band = 0;
-    for (; band < asset.record->bandCount && asset.bands[band] > level; ++band) runs.whole = ends[band];
-    runs.some = band < asset.record->bandCount ? ends[band] : runs.whole;
-    return runs;
+    return uint32_t(end - out);
 }
 
 template <typename Slot>
 uint32_t build(const AssetView& asset, uint32_t patch, Levels levels, const Slot* parents, const Slot* corners,
                uint32_t* rep, uint32_t* out) {
-    const format::PatchRecord& record = asset.patches[patch];
-    uint32_t slot = 0;
-    for (const uint32_t domain : asset.domainsOf(patch)) {
-        const format::VertexRange range = asset.domainRange(domain);
-        resolve(parents, slot, aliveCount(asset, range, domainLevel(asset, domain, levels)), range, rep);
-        slot += range.count;
-    }
-    const uint32_t level = levels[patch];
-    const format::VertexRange interior = asset.interiorRange(patch);
-    resolve(parents, slot, aliveCount(asset, interior, level), interior, rep);
+    const DomainStates domains = resolveDomains(asset, patch, levels, parents, rep);
+    const uint32_t level = levels[patch], firstInterior = domains.slotCount;
+    const ListedFaces list = listFor(asset, patch, std::min(level, domains.leastLevel));
 
-    const LivingRuns runs = livingRuns(asset, patch, level);
-    const uint8_t* deaths = asset.deaths.data() + record.firstFace;
-    uint32_t* end = emitAll(corners, 0, runs.whole.interior, rep, out);
-    end = emitLiving(corners, deaths, runs.whole.interior, runs.some.interior, level, rep, end);
-    const uint32_t boundary = record.interiorFaceCount;
-    end = emitSolid(corners, boundary, boundary + runs.some.boundary, rep, end);
-    return uint32_t(end - out);
+    const format::VertexRange interior = asset.interiorRange(patch);
+    const uint32_t named = aliveCount(asset, interior, list.level), alive = aliveCount(asset, interior, level);
+    resolve(parents, firstInterior, alive, {interior.first, named}, rep);
+
+    corners += 3 * size_t(list.first);
+    if (alive < named || domains.coarsestMoved > list.level) return emitSolid(corners, list.count, rep, out);
+    emitAll(corners, 3 * size_t(list.count), firstInterior, interior.first - firstInterior, rep, out);
+    return 3 * list.count;
 }
 
 } // namespace
@@ -114,9 +160,10 @@ uint32_t domainLevel(const AssetView& asset, uint32_t domain, Levels levels) {
     return level;
 }
 
-uint32_t indexCapacity(const AssetView& asset, uint32_t patch, uint32_t level) {
-    const LivingRuns runs = livingRuns(asset, patch, level);
-    return 3 * (runs.some.interior + runs.some.boundary);
+uint32_t indexCapacity(const AssetView& asset, uint32_t patch, Levels levels) {
+    uint32_t least = levels[patch];
+    for (const uint32_t domain : asset.domainsOf(patch)) least = std::min(least, domainLevel(asset, domain, levels));
+    return 3 * listFor(asset, patch, least).count;
 }
 
 uint32_t buildIndices(const AssetView& asset, uint32_t patch, Levels levels, std::span<uint32_t> scratch,
@@ -124,7 +171,7 @@ uint32_t buildIndices(const AssetView& asset, uint32_t patch, Levels levels, std
     const format::PatchRecord& record = asset.patches[patch];
     assert(levels.size() >= asset.patchCount());
     assert(scratch.size() >= record.slotCount);
-    assert(out.size() >= indexCapacity(asset, patch, levels[patch]));
+    assert(out.size() >= indexCapacity(asset, patch, levels));
     if (record.flags & format::kWideSlots) {
         return build(asset, patch, levels, asset.parentsWide.data() + record.firstParent,
                      asset.cornersWide.data() + record.firstCorner, scratch.data(), out.data());
@@ -134,17 +181,8 @@ uint32_t buildIndices(const AssetView& asset, uint32_t patch, Levels levels, std
 }
 
 bool patchDiffers(const AssetView& asset, uint32_t patch, uint32_t before, uint32_t after) {
-    const auto [low, high] = std::minmax(before, after);
-    if (low == high) return false;
     const format::VertexRange range = asset.interiorRange(patch);
-    if (aliveCount(asset, range, low) != aliveCount(asset, range, high)) return true;
-    // The same vertices: the same faces, unless a death byte says otherwise.
-    const auto diesBetween = [low = low, high = high](uint8_t death) { return death > low && death <= high; };
-    const LivingRuns fine = livingRuns(asset, patch, low), coarse = livingRuns(asset, patch, high);
-    const uint8_t* deaths = asset.deaths.data() + asset.patches[patch].firstFace;
-    const uint8_t* boundary = deaths + asset.patches[patch].interiorFaceCount;
-    return std::any_of(deaths + coarse.whole.interior, deaths + fine.some.interior, diesBetween) ||
-           std::any_of(boundary + coarse.some.boundary, boundary + fine.some.boundary, diesBetween);
+    return before != after && aliveCount(asset, range, before) != aliveCount(asset, range, after);
 }
 
 bool domainDiffers(const AssetView& asset, uint32_t domain, Levels before, Levels after) {

@@ -114,7 +114,6 @@ Status readSections(AssetView& view) {
     SectionReader reader(view.bytes);
     const std::span<const AssetRecord> record = reader.array<AssetRecord>(SectionId::asset);
     view.levels = reader.array<LevelRecord>(SectionId::levels);
-    view.bands = reader.array<uint32_t>(SectionId::bands);
     view.domains = reader.array<DomainRecord>(SectionId::domains);
     view.domainPatches = reader.array<uint32_t>(SectionId::domainPatches);
     view.vertexRanges = reader.array<VertexRange>(SectionId::vertexRanges);
@@ -122,7 +121,7 @@ Status readSections(AssetView& view) {
     view.patchDomains = reader.array<uint32_t>(SectionId::patchDomains);
     view.patchSlots = reader.array<uint32_t>(SectionId::patchSlots);
     view.patchErrors = reader.array<float>(SectionId::patchErrors);
-    view.patchBands = reader.array<BandEnd>(SectionId::patchBands);
+    view.faceLists = reader.array<FaceList>(SectionId::faceLists);
     view.parts = reader.array<PartRecord>(SectionId::parts);
     view.partNeighbours = reader.array<uint32_t>(SectionId::partNeighbours);
     view.materials = reader.array<MaterialRecord>(SectionId::materials);

@@ -28,7 +28,7 @@ std::span<const format::SectionRecord> sectionsOf(std::span<const std::byte> byt
 /// Relations within and between the tables (check_tables.cpp).
 Status checkTables(const AssetView& view);
 
-/// Installs the streams of the one page of version 1 (open_page.cpp).
+/// Installs the streams of the one page of version 2 (open_page.cpp).
 Status installPage(AssetView& view);
 
 /// What the streams hold, row by row, slot by slot, face by face (check_page.cpp).

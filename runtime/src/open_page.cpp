@@ -43,7 +43,6 @@ bool formatFits(StreamKind kind, StreamFormat format) {
         return format == StreamFormat::f32x3;
     case StreamKind::collapseLevel:
     case StreamKind::birthLevel:
-    case StreamKind::death:
         return format == StreamFormat::u8;
     case StreamKind::parentNarrow:
     case StreamKind::cornerNarrow:
@@ -91,7 +90,7 @@ Status installVertexStream(AssetView& v, const StreamRecord& s, uint64_t index) 
 
 bool isKnown(StreamKind kind) {
     return (kind >= StreamKind::position && kind <= StreamKind::birthLevel) ||
-           (kind >= StreamKind::parentNarrow && kind <= StreamKind::death);
+           (kind >= StreamKind::parentNarrow && kind <= StreamKind::cornerWide);
 }
 
 bool isRowStream(StreamKind kind) {
@@ -127,9 +126,6 @@ Status installStream(AssetView& v, uint64_t index) {
     case StreamKind::cornerWide:
         v.cornersWide = elements<uint32_t>(v, s);
         break;
-    case StreamKind::death:
-        v.deaths = elements<uint8_t>(v, s);
-        break;
     case StreamKind::normal:
     case StreamKind::tangent:
     case StreamKind::uv:
@@ -147,7 +143,7 @@ Status checkCounts(const AssetView& v) {
     for (const PatchRecord& patch : v.patches) {
         const bool wide = patch.flags & kWideSlots;
         (wide ? wideSlots : narrowSlots) += patch.slotCount;
-        (wide ? wideFaces : narrowFaces) += uint64_t(patch.interiorFaceCount) + patch.boundaryFaceCount;
+        (wide ? wideFaces : narrowFaces) += patch.listedFaceCount;
     }
     if (v.positions.size() != v.record->vertexCount) return corrupt("the page has no position for each vertex row");
     if (v.collapseLevels.size() != v.record->vertexCount)
@@ -155,8 +151,7 @@ Status checkCounts(const AssetView& v) {
     if (v.parentsNarrow.size() != narrowSlots || v.parentsWide.size() != wideSlots)
         return corrupt("the page has not a parent for each slot");
     if (v.cornersNarrow.size() != 3 * narrowFaces || v.cornersWide.size() != 3 * wideFaces)
-        return corrupt("the page has not three corners for each face");
-    if (v.deaths.size() != v.record->faceCount) return corrupt("the page has no death level for each face");
+        return corrupt("the page has not three corners for each listed face");
     return {};
 }
 

@@ -34,7 +34,7 @@ int show(std::span<const std::byte> fileBytes, const glm::vec3& eye, float fovY,
     std::vector<uint32_t> scratch(xgc::scratchCapacity(asset)), indices;
     xgc::select(asset, xgc::Placement{}, xgc::makeView(eye, fovY, viewportHeight), xgc::ErrorPixels{1.0f}, levels);
     for (uint32_t patch = 0; patch < asset.patchCount(); ++patch) {
-        indices.resize(xgc::indexCapacity(asset, patch, levels[patch]));
+        indices.resize(xgc::indexCapacity(asset, patch, levels));
         indices.resize(xgc::buildIndices(asset, patch, levels, scratch, indices));
         draw(asset.positions, indices, asset.patches[patch].material);
     }

@@ -16,7 +16,7 @@ public:
     HandAsset(const std::vector<glm::vec3>& points, const std::vector<glm::uvec3>& triangles, uint32_t facesPerPatch) {
         const auto faceCount = uint32_t(triangles.size());
         for (uint32_t first = 0; first < faceCount; first += facesPerPatch) {
-            addPatch(points, {triangles.data() + first, std::min(facesPerPatch, faceCount - first)}, first);
+            addPatch(points, {triangles.data() + first, std::min(facesPerPatch, faceCount - first)});
         }
         finishRecords(faceCount);
         finishView();
@@ -27,12 +27,11 @@ public:
     AssetView view;
 
 private:
-    void addPatch(const std::vector<glm::vec3>& points, std::span<const glm::uvec3> faces, uint32_t firstFace) {
+    void addPatch(const std::vector<glm::vec3>& points, std::span<const glm::uvec3> faces) {
         const auto slots = uint32_t(3 * faces.size());
         format::PatchRecord patch{};
         patch.slotCount = slots;
-        patch.interiorFaceCount = uint32_t(faces.size());
-        patch.firstFace = firstFace;
+        patch.faceCount = patch.listedFaceCount = uint32_t(faces.size());
         patch.firstCorner = uint32_t(corners_.size());
         patch.firstParent = uint32_t(parents_.size());
         patch.flags = format::kWideSlots;
@@ -43,12 +42,12 @@ private:
             parents_.push_back(0);
         }
         patches_.push_back(patch);
-        bands_.push_back({uint32_t(faces.size()), 0});
+        lists_.push_back({0, uint32_t(faces.size())});
     }
 
     void finishRecords(uint32_t faceCount) {
         record_.levelCount = 1;
-        record_.bandCount = 1;
+        record_.listCount = 1;
         record_.patchCount = uint32_t(patches_.size());
         record_.partCount = 1;
         record_.materialCount = 1;
@@ -56,30 +55,27 @@ private:
         record_.faceCount = faceCount;
         for (const format::PatchRecord& p : patches_) {
             record_.maxPatchSlots = std::max(record_.maxPatchSlots, p.slotCount);
-            record_.maxPatchFaces = std::max(record_.maxPatchFaces, p.interiorFaceCount);
+            record_.maxPatchFaces = std::max(record_.maxPatchFaces, p.faceCount);
         }
         std::fill_n(material_.baseColor, 4, 1.0f);
         material_.roughness = 1;
         part_.patchCount = record_.patchCount;
         collapse_.assign(positions_.size(), format::kNever);
-        deaths_.assign(faceCount, format::kNever);
         errors_.assign(patches_.size(), 0.0f);
     }
 
     void finishView() {
         view.record = &record_;
-        view.bands = {&leastDeath_, 1};
         view.vertexRanges = ranges_;
         view.patches = patches_;
         view.patchErrors = errors_;
-        view.patchBands = bands_;
+        view.faceLists = lists_;
         view.parts = {&part_, 1};
         view.materials = {&material_, 1};
         view.positions = positions_;
         view.collapseLevels = collapse_;
         view.parentsWide = parents_;
         view.cornersWide = corners_;
-        view.deaths = deaths_;
         VertexStream& stream = view.vertexStreams[0];
         stream.kind = format::StreamKind::position;
         stream.format = format::StreamFormat::f32x3;
@@ -92,15 +88,13 @@ private:
     format::AssetRecord record_{};
     format::MaterialRecord material_{};
     format::PartRecord part_{};
-    uint32_t leastDeath_ = 1;
     std::vector<format::VertexRange> ranges_;
     std::vector<format::PatchRecord> patches_;
-    std::vector<format::BandEnd> bands_;
+    std::vector<format::FaceList> lists_;
     std::vector<float> errors_;
     std::vector<glm::vec3> positions_;
     std::vector<uint8_t> collapse_;
     std::vector<uint32_t> parents_, corners_;
-    std::vector<uint8_t> deaths_;
 };
 
 } // namespace xgc::test

@@ -87,7 +87,7 @@ inline bool drawsSafely(const AssetView& asset, uint32_t states, uint32_t seed) 
     for (uint32_t state = 0; state < states; ++state) {
         for (uint8_t& l : levels) l = uint8_t(random() % asset.levelCount());
         for (uint32_t p = 0; p < asset.patchCount(); ++p) {
-            const uint32_t capacity = indexCapacity(asset, p, levels[p]);
+            const uint32_t capacity = indexCapacity(asset, p, levels);
             std::vector<uint32_t> out(size_t(capacity) + 1, kGuard);
             const uint32_t count = buildIndices(asset, p, levels, std::span(scratch).first(scratch.size() - 1),
                                                 std::span(out).first(capacity));

@@ -80,8 +80,6 @@ const char* streamName(StreamKind kind) {
         return "cornerNarrow";
     case StreamKind::cornerWide:
         return "cornerWide";
-    case StreamKind::death:
-        return "death";
     }
     return "unknown";
 }
@@ -92,8 +90,6 @@ const char* sectionName(SectionId id) {
         return "asset";
     case SectionId::levels:
         return "levels";
-    case SectionId::bands:
-        return "bands";
     case SectionId::domains:
         return "domains";
     case SectionId::domainPatches:
@@ -106,8 +102,8 @@ const char* sectionName(SectionId id) {
         return "patchDomains";
     case SectionId::patchErrors:
         return "patchErrors";
-    case SectionId::patchBands:
-        return "patchBands";
+    case SectionId::faceLists:
+        return "faceLists";
     case SectionId::parts:
         return "parts";
     case SectionId::partNeighbours:

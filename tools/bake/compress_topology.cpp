@@ -18,7 +18,7 @@ bool isWide(const PatchRecord& patch) {
 }
 
 uint32_t faceCountOf(const PatchRecord& patch) {
-    return patch.interiorFaceCount + patch.boundaryFaceCount;
+    return patch.listedFaceCount;
 }
 
 uint32_t cornerOf(const AssetView& asset, const PatchRecord& patch, uint32_t i) {

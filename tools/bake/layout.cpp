@@ -45,6 +45,17 @@ struct Layout {
         return std::span(faces.order)
             .subspan(faces.firstFace[patch], faces.firstFace[patch + 1] - faces.firstFace[patch]);
     }
+    uint64_t listedFaceCount(uint32_t patch) const {
+        uint64_t count = 0;
+        for (const FacesOfLevel& list : faces.lists[patch]) count += list.triangles.size();
+        return count;
+    }
+    /// Face lists of the patch that has most.
+    uint32_t listCount() const {
+        size_t count = 0;
+        for (const auto& lists : faces.lists) count = std::max(count, lists.size());
+        return uint32_t(count);
+    }
 };
 
 Status refuse(const char* what, size_t element) {
@@ -66,6 +77,14 @@ Status checkPatches(const Mesh& mesh, const Segmentation& parts, const Hierarchy
         const std::vector<uint32_t>& set = h.domainPatches[d];
         if (set.empty() || set.back() >= h.patchCount() || !std::is_sorted(set.begin(), set.end(), std::less_equal<>()))
             return refuse("patches out of order or range, domain", d);
+    }
+    return {};
+}
+
+Status checkFaces(const Mesh& mesh) {
+    for (uint32_t f = 0; f < mesh.faceCount(); ++f) {
+        const glm::uvec3 p = mesh.facePositions(f);
+        if (p.x == p.y || p.y == p.z || p.z == p.x) return refuse("two corners have one position, face", f);
     }
     return {};
 }
@@ -101,6 +120,7 @@ Status checkInput(const Mesh& mesh, const Segmentation& parts, const Hierarchy& 
                                     kMostFaces, mesh.faces.size()));
     if (Status s = checkPatches(mesh, parts, h); !s.ok()) return s;
     if (Status s = checkHierarchy(mesh, h); !s.ok()) return s;
+    if (Status s = checkFaces(mesh); !s.ok()) return s;
     if (Status s = checkColumns(h); !s.ok()) return s;
     return checkErrors(h, errors);
 }
@@ -116,9 +136,12 @@ Status checkLimits(const Layout& l) {
         return badInput(fmt::format("the patches have {} vertices together, more than 2^32: use fewer patches or split "
                                     "the mesh into several assets",
                                     slots));
-    for (size_t i = 0; i < l.faces.deaths.size(); ++i) {
-        if (l.faces.deaths[i] == 0) return refuse("two corners have one position at level 0, face", l.faces.order[i]);
-    }
+    uint64_t listed = 0;
+    for (uint32_t p = 0; p < l.hierarchy.patchCount(); ++p) listed += l.listedFaceCount(p);
+    if (listed > UINT32_MAX / 3)
+        return badInput(fmt::format("the patches list {} faces together, more than {}: split the mesh into several "
+                                    "assets",
+                                    listed, UINT32_MAX / 3));
     return {};
 }
 
@@ -126,7 +149,7 @@ void addAsset(Layout& l, bool inputIsClosed) {
     const Hierarchy& h = l.hierarchy;
     AssetRecord r = {};
     r.levelCount = h.levelCount;
-    r.bandCount = uint32_t(l.faces.bands.size());
+    r.listCount = l.listCount();
     r.tierCount = r.pageGroupCount = 1;
     r.domainCount = uint32_t(l.domains.sets.size());
     r.patchCount = h.patchCount();
@@ -171,9 +194,16 @@ void addLevels(Layout& l) {
         }
     }
     l.file.section<LevelRecord>(SectionId::levels, levels);
-    l.file.section<uint32_t>(SectionId::bands, l.faces.bands);
     l.file.section<float>(SectionId::patchErrors, l.errors.values);
-    l.file.section<BandEnd>(SectionId::patchBands, l.faces.bandEnds);
+}
+
+void addFaceLists(Layout& l) {
+    std::vector<FaceList> lists;
+    for (const std::vector<FacesOfLevel>& patch : l.faces.lists) {
+        for (const FacesOfLevel& list : patch) lists.push_back({list.level, uint32_t(list.triangles.size())});
+        lists.resize(lists.size() + l.listCount() - patch.size(), {kNever, 0});
+    }
+    l.file.section<FaceList>(SectionId::faceLists, lists);
 }
 
 void addDomains(Layout& l) {
@@ -216,9 +246,8 @@ void addPatches(Layout& l) {
         r.firstDomain = firstDomain;
         r.domainCount = uint32_t(l.domains.ofPatch[p].size());
         r.slotCount = run.slotCount;
-        r.interiorFaceCount = l.faces.interiorCount[p];
-        r.boundaryFaceCount = uint32_t(l.facesOf(p).size()) - r.interiorFaceCount;
-        r.firstFace = l.faces.firstFace[p];
+        r.faceCount = uint32_t(l.facesOf(p).size());
+        r.listedFaceCount = uint32_t(l.listedFaceCount(p));
         r.firstCorner = run.firstCorner;
         r.firstParent = run.firstParent;
         r.flags = run.wide ? uint32_t(kWideSlots) : 0u;
@@ -297,7 +326,6 @@ void addStreams(Layout& l) {
     l.file.stream<uint32_t>(StreamKind::parentWide, StreamFormat::u32, 0, l.slots.parentsWide);
     l.file.stream<uint16_t>(StreamKind::cornerNarrow, StreamFormat::u16, 0, l.slots.cornersNarrow);
     l.file.stream<uint32_t>(StreamKind::cornerWide, StreamFormat::u32, 0, l.slots.cornersWide);
-    l.file.stream<uint8_t>(StreamKind::death, StreamFormat::u8, 0, l.faces.deaths);
 }
 
 /// No file that the runtime would refuse is handed out.
@@ -316,13 +344,14 @@ Status layOutAsset(const Mesh& mesh, const Segmentation& parts, const Hierarchy&
     if (Status s = checkInput(mesh, parts, hierarchy, errors); !s.ok()) return s;
     Layout l{mesh, parts, hierarchy, errors};
     l.domains = orderDomains(hierarchy, usedWedges(mesh, hierarchy));
-    l.faces = orderFaces(mesh, hierarchy, l.domains);
+    l.faces = orderFaces(mesh, hierarchy);
     l.rows = orderRows(mesh, hierarchy, l.domains, l.faces);
     if (Status s = checkLimits(l); !s.ok()) return s;
-    l.slots = numberSlots(mesh, hierarchy, l.domains, l.faces, l.rows);
+    l.slots = numberSlots(hierarchy, l.domains, l.faces, l.rows);
 
     addAsset(l, inputIsClosed);
     addLevels(l);
+    addFaceLists(l);
     addDomains(l);
     addPatches(l);
     addParts(l);

@@ -6,7 +6,7 @@
 #include <glm/vec3.hpp>
 
 // The steps of `layOutAsset`. Each is a function of the mesh, its hierarchy and the results of the steps before:
-// domains -> faces (deaths, bands, order) -> rows (order of the vertices) -> slots (parents, corners), and beside
+// domains -> faces (lists, order) -> rows (order of the vertices) -> slots (parents, corners), and beside
 // them bounds, parts and the attribute streams.
 
 namespace xgc::bake::layout {
@@ -18,28 +18,26 @@ struct Domains {
     /// it.
     std::vector<uint32_t> groupOf;
     std::vector<std::vector<uint32_t>> ofPatch; ///< rising
-
-    bool isShared(uint32_t group) const { return group < sets.size(); }
 };
 
 /// Wedges that a corner of a face, or a parent up from one, refers to: 1, else 0.
 std::vector<uint8_t> usedWedges(const Mesh& mesh, const Hierarchy& hierarchy);
 Domains orderDomains(const Hierarchy& hierarchy, const std::vector<uint8_t>& used);
 
-/// Faces patch by patch, each patch interior faces first, each run band by band, each band for the vertex cache.
-struct Faces {
-    std::vector<uint32_t> bands;           ///< least death level of each band, falling
-    std::vector<uint32_t> order;           ///< mesh faces
-    std::vector<uint8_t> deaths;           ///< beside order
-    std::vector<uint32_t> firstFace;       ///< per patch, and the end
-    std::vector<uint32_t> interiorCount;   ///< per patch
-    std::vector<format::BandEnd> bandEnds; ///< patch * bandCount + band
-    std::vector<uint32_t> levelFaceCounts; ///< triangles of the uniform states
+/// What a patch draws in the uniform state of a level, in order.
+struct FacesOfLevel {
+    uint32_t level = 0;
+    std::vector<glm::uvec3> triangles; ///< wedges
 };
-Faces orderFaces(const Mesh& mesh, const Hierarchy& hierarchy, const Domains& domains);
 
-/// Misses of a vertex cache of 16 per triangle, at each uniform level, over the patches one after the other.
-std::vector<float> measureAcmr(const Mesh& mesh, const Hierarchy& hierarchy, const Faces& faces);
+/// Faces patch by patch, ordered for the vertex cache.
+struct Faces {
+    std::vector<uint32_t> order;                  ///< mesh faces, as the patches' first lists hold them
+    std::vector<uint32_t> firstFace;              ///< per patch, and the end
+    std::vector<std::vector<FacesOfLevel>> lists; ///< per patch, rising levels, the first of level 0
+    std::vector<uint32_t> levelFaceCounts;        ///< triangles of the uniform states
+};
+Faces orderFaces(const Mesh& mesh, const Hierarchy& hierarchy);
 
 /// Vertex rows group by group.
 struct Rows {
@@ -62,8 +60,7 @@ struct Slots {
     std::vector<uint16_t> parentsNarrow, cornersNarrow;
     std::vector<uint32_t> parentsWide, cornersWide;
 };
-Slots numberSlots(const Mesh& mesh, const Hierarchy& hierarchy, const Domains& domains, const Faces& faces,
-                  const Rows& rows);
+Slots numberSlots(const Hierarchy& hierarchy, const Domains& domains, const Faces& faces, const Rows& rows);
 
 struct Sphere {
     glm::vec3 center{0};

@@ -49,22 +49,27 @@ void appendParents(const Hierarchy& h, const Rows& rows, format::VertexRange ran
 }
 
 template <typename Slot>
-void appendPatch(const Mesh& mesh, const Hierarchy& h, const Domains& domains, const Faces& faces, const Rows& rows,
-                 uint32_t patch, const SlotMap& map, std::vector<Slot>& parents, std::vector<Slot>& corners) {
+void appendCorners(const glm::uvec3& triangle, const SlotMap& map, std::vector<Slot>& corners) {
+    // From the lowest slot on, so that codecs need not tell where a face starts.
+    std::array<uint32_t, 3> face{};
+    for (int k = 0; k < 3; ++k) face[k] = map.slotOf(triangle[k]);
+    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+    for (const uint32_t slot : face) corners.push_back(Slot(slot));
+}
+
+template <typename Slot>
+void appendPatch(const Hierarchy& h, const Domains& domains, const Faces& faces, const Rows& rows, uint32_t patch,
+                 const SlotMap& map, std::vector<Slot>& parents, std::vector<Slot>& corners) {
     for (const uint32_t d : domains.ofPatch[patch]) appendParents(h, rows, rows.ranges[d], map, parents);
     appendParents(h, rows, rows.ranges[domains.sets.size() + patch], map, parents);
-    for (uint32_t i = faces.firstFace[patch]; i < faces.firstFace[patch + 1]; ++i) {
-        // From the lowest slot on, so that codecs need not tell where a face starts.
-        std::array<uint32_t, 3> face{};
-        for (int k = 0; k < 3; ++k) face[k] = map.slotOf(mesh.faces[faces.order[i]][k]);
-        std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
-        for (const uint32_t slot : face) corners.push_back(Slot(slot));
+    for (const FacesOfLevel& list : faces.lists[patch]) {
+        for (const glm::uvec3& triangle : list.triangles) appendCorners(triangle, map, corners);
     }
 }
 
 } // namespace
 
-Slots numberSlots(const Mesh& mesh, const Hierarchy& h, const Domains& domains, const Faces& faces, const Rows& rows) {
+Slots numberSlots(const Hierarchy& h, const Domains& domains, const Faces& faces, const Rows& rows) {
     Slots slots;
     SlotMap map(h, domains, rows);
     for (uint32_t p = 0; p < h.patches.size(); ++p) {
@@ -74,9 +79,9 @@ Slots numberSlots(const Mesh& mesh, const Hierarchy& h, const Domains& domains, 
         run.firstParent = uint32_t(run.wide ? slots.parentsWide.size() : slots.parentsNarrow.size());
         run.firstCorner = uint32_t(run.wide ? slots.cornersWide.size() : slots.cornersNarrow.size());
         if (run.wide) {
-            appendPatch(mesh, h, domains, faces, rows, p, map, slots.parentsWide, slots.cornersWide);
+            appendPatch(h, domains, faces, rows, p, map, slots.parentsWide, slots.cornersWide);
         } else {
-            appendPatch(mesh, h, domains, faces, rows, p, map, slots.parentsNarrow, slots.cornersNarrow);
+            appendPatch(h, domains, faces, rows, p, map, slots.parentsNarrow, slots.cornersNarrow);
         }
         slots.patches.push_back(run);
     }

@@ -161,7 +161,7 @@ Status checkLevels(const AssetView& asset, std::span<const uint8_t> levels) {
 void addTriangles(const AssetView& asset, std::span<const uint8_t> levels, Model& model) {
     std::vector<uint32_t> scratch(scratchCapacity(asset)), indices;
     for (uint32_t p = 0; p < asset.patchCount(); ++p) {
-        indices.resize(indexCapacity(asset, p, levels[p]));
+        indices.resize(indexCapacity(asset, p, levels));
         const uint32_t count = buildIndices(asset, p, levels, scratch, indices);
         for (uint32_t i = 0; i < count; i += 3) {
             model.triangleFace.push_back(uint32_t(model.triangles.size()));

@@ -75,7 +75,7 @@ Expanded::Expanded(const AssetView& asset)
         for (uint32_t slot = 0; slot < rows.size(); ++slot) {
             parent[rows[slot]] = rows[parentSlot(asset, patch, slot)];
         }
-        for (uint32_t f = 0; f < patch.interiorFaceCount + patch.boundaryFaceCount; ++f) {
+        for (uint32_t f = 0; f < patch.faceCount; ++f) {
             const auto row = [&](uint32_t k) { return rows[cornerSlot(asset, patch, 3 * f + k)]; };
             faces.emplace_back(row(0), row(1), row(2));
             facePatch.push_back(p);

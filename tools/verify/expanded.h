@@ -11,7 +11,7 @@ namespace xgc::bake {
 /// Ids of exact coordinates, equal where coordinates are (-0 equals 0), dense.
 std::vector<uint32_t> pointIds(std::span<const glm::vec3> positions);
 
-/// An asset's tables without slots, prefixes and bands: one row of columns per vertex and face.
+/// An asset's tables without slots, prefixes and face lists but the finest: one row of columns per vertex and face.
 struct Expanded {
     explicit Expanded(const AssetView& asset);
 

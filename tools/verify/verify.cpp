@@ -146,7 +146,7 @@ private:
         state.rep = representatives(asset_, expanded_, state.levels);
         std::vector<uint32_t> scratch(scratchCapacity(asset_)), out;
         for (uint32_t p = 0; p < asset_.patchCount(); ++p) {
-            out.resize(indexCapacity(asset_, p, state.levels[p]));
+            out.resize(indexCapacity(asset_, p, state.levels));
             const uint32_t count = buildIndices(asset_, p, state.levels, scratch, out);
             for (uint32_t i = 0; i + 2 < count; i += 3) state.drawn.emplace_back(out[i], out[i + 1], out[i + 2]);
         }

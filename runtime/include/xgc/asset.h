@@ -32,15 +32,14 @@ struct AssetView {
     std::span<const std::byte> bytes;
     const format::AssetRecord* record = nullptr;
     std::span<const format::LevelRecord> levels;
-    std::span<const uint32_t> bands; ///< least death level of each band, falling
     std::span<const format::DomainRecord> domains;
     std::span<const uint32_t> domainPatches;
     std::span<const format::VertexRange> vertexRanges;
     std::span<const format::PatchRecord> patches;
     std::span<const uint32_t> patchDomains;
-    std::span<const uint32_t> patchSlots; ///< beside patchDomains: first slot of the domain in the patch
-    std::span<const float> patchErrors;   ///< patch * levelCount + level, mesh units
-    std::span<const format::BandEnd> patchBands;
+    std::span<const uint32_t> patchSlots;        ///< beside patchDomains: first slot of the domain in the patch
+    std::span<const float> patchErrors;          ///< patch * levelCount + level, mesh units
+    std::span<const format::FaceList> faceLists; ///< patch * listCount + list
     std::span<const format::PartRecord> parts;
     std::span<const uint32_t> partNeighbours;
     std::span<const format::MaterialRecord> materials;
@@ -58,7 +57,6 @@ struct AssetView {
     std::span<const uint32_t> parentsWide;
     std::span<const uint16_t> cornersNarrow; ///< PatchRecord::firstCorner + 3 * face + corner
     std::span<const uint32_t> cornersWide;
-    std::span<const uint8_t> deaths;                           ///< PatchRecord::firstFace + face
     std::array<VertexStream, kMaxVertexStreams> vertexStreams; ///< what a renderer uploads, position first
     uint32_t vertexStreamCount = 0;
 
@@ -72,6 +70,10 @@ struct AssetView {
     std::span<const uint32_t> domainsOf(uint32_t patch) const {
         return patchDomains.subspan(patches[patch].firstDomain, patches[patch].domainCount);
     }
+    /// Face lists of a patch, the finest first.
+    std::span<const format::FaceList> listsOf(uint32_t patch) const {
+        return faceLists.subspan(size_t(patch) * record->listCount, record->listCount);
+    }
     /// First slot of each of those domains.
     std::span<const uint32_t> domainSlotsOf(uint32_t patch) const {
         return patchSlots.subspan(patches[patch].firstDomain, patches[patch].domainCount);
@@ -79,7 +81,7 @@ struct AssetView {
     std::span<const uint32_t> patchesOf(uint32_t domain) const {
         return domainPatches.subspan(domains[domain].firstPatch, domains[domain].patchCount);
     }
-    /// Vertex rows of a domain, and of a patch's interior (version 1: one tier).
+    /// Vertex rows of a domain, and of a patch's interior (version 2: one tier).
     format::VertexRange domainRange(uint32_t domain) const { return vertexRanges[domain]; }
     format::VertexRange interiorRange(uint32_t patch) const {
         return vertexRanges[size_t(record->domainCount) + patch];
@@ -87,7 +89,7 @@ struct AssetView {
 };
 
 /// Checks and opens the tables of an asset: memory safety and one genealogy for all patches (ranges,
-/// orders, inclusion of domains, capacities), not the truth of errors, bounds and deaths, which is the
+/// orders, inclusion of domains, capacities), not the truth of errors, bounds and face lists, which is the
 /// tool's `verify`.
 ///
 /// `bytes`: at least FileHeader::tableBytes of the file, aligned to format::kAlignment, kept alive

@@ -8,29 +8,28 @@
 namespace xgc::format {
 
 inline constexpr std::array<unsigned char, 8> kMagic = {'X', 'G', 'C', '\r', '\n', 0x1a, '\n', 0};
-inline constexpr uint32_t kVersion = 1;
+inline constexpr uint32_t kVersion = 2;
 /// Sections and pages start at multiples of this, and so must the bytes given to `open`.
 inline constexpr uint32_t kAlignment = 64;
 /// "No such element" in u32 fields.
 inline constexpr uint32_t kNone = 0xffffffffu;
-/// A collapse or death level that no state reaches.
+/// A collapse level, or the level of a face list, that no state reaches.
 inline constexpr uint8_t kNever = 255;
 /// Levels 0..K with K + 1 <= kMaxLevels, so that every level is below kNever.
 inline constexpr uint32_t kMaxLevels = 254;
-inline constexpr uint32_t kMaxBands = 16;
+inline constexpr uint32_t kMaxFaceLists = 16;
 inline constexpr uint32_t kMaxTiers = 8;
 
 enum class SectionId : uint32_t {
     asset = 1,           ///< one AssetRecord
     levels = 2,          ///< LevelRecord[levelCount]
-    bands = 3,           ///< u32[bandCount]: the least death level of each band, falling
     domains = 4,         ///< DomainRecord[domainCount], widest first
     domainPatches = 5,   ///< u32[]: patches of each domain, rising
     vertexRanges = 6,    ///< VertexRange[(domainCount + patchCount) * tierCount]
     patches = 7,         ///< PatchRecord[patchCount], by part
     patchDomains = 8,    ///< u32[]: domains of each patch, rising; d is listed by p where p is in d's patches
     patchErrors = 9,     ///< f32[patchCount * levelCount]
-    patchBands = 10,     ///< BandEnd[patchCount * bandCount]
+    faceLists = 10,      ///< FaceList[patchCount * listCount]
     parts = 11,          ///< PartRecord[partCount]
     partNeighbours = 12, ///< u32[]: adjacent parts of each part, rising
     materials = 13,      ///< MaterialRecord[materialCount], at least one
@@ -45,7 +44,7 @@ enum class SectionId : uint32_t {
     morphTargets = 66,
     skins = 67,
     locks = 68,
-    provenance = 69, ///< UTF-8 JSON: settings, hash of the input, version of the tool (written by version 1)
+    provenance = 69, ///< UTF-8 JSON: settings, hash of the input, version of the tool (written by version 2)
     patchTiers = 70, ///< per patch and tier after the first: its firsts and counts in that tier's pages
 };
 
@@ -67,7 +66,7 @@ struct FileHeader {
     uint64_t fileBytes;
     uint64_t tableBytes;     ///< header, section table and all sections: pages follow
     uint64_t headerChecksum; ///< XXH64, seed 0, of header and section table with this field zero
-    uint32_t flags;          ///< 0 in version 1
+    uint32_t flags;          ///< 0 in version 2
     uint32_t reserved[5];
 };
 static_assert(sizeof(FileHeader) == 64);
@@ -91,7 +90,7 @@ enum AssetFlags : uint32_t {
 
 struct AssetRecord {
     uint32_t levelCount; ///< K + 1
-    uint32_t bandCount;
+    uint32_t listCount;  ///< face lists of a patch, those that it leaves empty included
     uint32_t tierCount;
     uint32_t pageGroupCount;
     uint32_t domainCount;
@@ -125,7 +124,7 @@ static_assert(sizeof(LevelRecord) == 16);
 
 struct DomainRecord {
     uint32_t firstPatch; ///< in domainPatches
-    uint32_t patchCount; ///< at least 1; version 1 keeps rows of one patch in its interior and writes 2 or more
+    uint32_t patchCount; ///< at least 1; version 2 keeps rows of one patch in its interior and writes 2 or more
     uint32_t pageGroup;  ///< whose pages hold its rows
     uint32_t reserved;
 };
@@ -148,12 +147,11 @@ struct PatchRecord {
     uint32_t material;
     uint32_t firstDomain; ///< in patchDomains
     uint32_t domainCount;
-    uint32_t slotCount;         ///< vertices of its domains in list order, then of its interior
-    uint32_t interiorFaceCount; ///< faces whose death depends on the level of this patch alone
-    uint32_t boundaryFaceCount; ///< faces that a neighbour's level may make degenerate
-    uint32_t firstFace;         ///< in the death stream; the interior faces come first
-    uint32_t firstCorner;       ///< in the narrow or wide corner stream, three a face
-    uint32_t firstParent;       ///< in the narrow or wide parent stream, one a slot
+    uint32_t slotCount;       ///< vertices of its domains in list order, then of its interior
+    uint32_t faceCount;       ///< at level 0
+    uint32_t listedFaceCount; ///< of all its face lists together
+    uint32_t firstCorner;     ///< in the narrow or wide corner stream, three a listed face
+    uint32_t firstParent;     ///< in the narrow or wide parent stream, one a slot
     uint32_t pageGroup;
     uint32_t flags;  ///< PatchFlags
     float boxMin[3]; ///< contains the patch in every state, mesh space
@@ -163,17 +161,17 @@ struct PatchRecord {
     float coneAxis[3]; ///< unit; face normals n of the patch have dot(n, axis) >= coneCosine ...
     float coneCosine;  ///< ... at its levels <= coneLevel, whatever its neighbours do; -1 where there is no cone
     uint32_t coneLevel;
-    uint32_t reserved[5];
+    uint32_t reserved[6];
 };
 static_assert(sizeof(PatchRecord) == 128);
 
-/// Ends of one band in a patch's two runs of faces, counted from the start of each run. Entry
-/// patch * bandCount + band.
-struct BandEnd {
-    uint32_t interior;
-    uint32_t boundary;
+/// What a patch draws with all patches at one level, which holds all that it can draw where none of its groups is at a
+/// finer one. Entry patch * listCount + list; the lists of a patch follow one another in the corner stream.
+struct FaceList {
+    uint32_t level; ///< kNever: empty, and so are those behind it
+    uint32_t faceCount;
 };
-static_assert(sizeof(BandEnd) == 8);
+static_assert(sizeof(FaceList) == 8);
 
 struct Text {
     uint32_t offset; ///< in strings
@@ -218,7 +216,7 @@ struct NodeRecord {
 static_assert(sizeof(NodeRecord) == 80);
 
 /// A run of bytes that is loaded as a whole: a range of levels (tier 0 is the coarsest) of a group
-/// of patches. Version 1 writes one page with everything.
+/// of patches. Version 2 writes one page with everything.
 struct PageRecord {
     uint32_t tier;
     uint32_t group;
@@ -250,11 +248,9 @@ enum class StreamKind : uint32_t {
     // one element a slot of a patch
     parentNarrow = 16, ///< u16
     parentWide = 17,   ///< u32
-    // three elements a face
+    // three elements a listed face
     cornerNarrow = 18, ///< u16
     cornerWide = 19,   ///< u32
-    // one element a face
-    death = 20, ///< u8: the first level at which the face cannot be drawn
 };
 
 enum class StreamFormat : uint32_t {

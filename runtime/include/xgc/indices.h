@@ -10,9 +10,10 @@ using Levels = std::span<const uint8_t>;
 /// Level of a domain in a state: the least over its patches.
 uint32_t domainLevel(const AssetView& asset, uint32_t domain, Levels levels);
 
-/// Most indices that `buildIndices` can write for the patch at a level, whatever its neighbours do.
-/// Falls with the level.
-uint32_t indexCapacity(const AssetView& asset, uint32_t patch, uint32_t level);
+/// Most indices that `buildIndices` can write for the patch in a state; within a small factor of what it
+/// writes where the patch and its neighbours are at like levels, and exact where all are at level 0. It
+/// does not rise where no level falls.
+uint32_t indexCapacity(const AssetView& asset, uint32_t patch, Levels levels);
 
 /// Scratch entries that `buildIndices` needs for any patch of the asset.
 inline uint32_t scratchCapacity(const AssetView& asset) {
@@ -24,19 +25,19 @@ inline uint32_t scratchCapacity(const AssetView& asset) {
 /// cracks. Returns the number of indices written.
 ///
 /// `scratch`: scratchCapacity entries, overwritten; one per thread. `out`: at least
-/// `indexCapacity(asset, patch, levels[patch])` entries; the rest of it may be overwritten up to that
+/// `indexCapacity(asset, patch, levels)` entries; the rest of it may be overwritten up to that
 /// capacity. No allocation.
 uint32_t buildIndices(const AssetView& asset, uint32_t patch, Levels levels, std::span<uint32_t> scratch,
                       std::span<uint32_t> out);
 
-/// True where the index list of `patch` differs, or may differ, between two states: a vertex of its interior or of
-/// a domain that it shares collapses between the two levels (or a death level of its faces lies between them). A
-/// patch whose level repeats the surface of another level needs no rebuild.
+/// True where the triangles of `patch` differ, or may differ, between two states: a vertex of its interior or of a
+/// domain that it shares collapses between the two levels. A patch whose level repeats the surface of another level
+/// needs no rebuild: its triangles are the same, if perhaps in another order.
 bool needsRebuild(const AssetView& asset, uint32_t patch, Levels before, Levels after);
 
 // The two halves of needsRebuild, for callers that know which patches changed level.
 
-/// True where the patch's own vertices or faces differ between two of its levels.
+/// True where the patch's own vertices differ between two of its levels.
 bool patchDiffers(const AssetView& asset, uint32_t patch, uint32_t before, uint32_t after);
 /// True where vertices of the domain differ between two states: then all its patches need a rebuild.
 bool domainDiffers(const AssetView& asset, uint32_t domain, Levels before, Levels after);

@@ -218,7 +218,7 @@ constexpr bool isWidth(const PatchRecord& patch, size_t slotBytes) {
 }
 
 uint64_t faceCountOf(const PatchRecord& patch) {
-    return uint64_t(patch.interiorFaceCount) + patch.boundaryFaceCount;
+    return patch.listedFaceCount;
 }
 
 } // namespace
