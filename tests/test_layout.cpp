@@ -1,5 +1,7 @@
 #include "meshes/toy_asset.h"
 
+#include <xgc/bake/default_hierarchy.h>
+#include <xgc/bake/patches.h>
 #include <xgc/indices.h>
 
 #include <doctest/doctest.h>
@@ -194,43 +196,69 @@ TEST_CASE("a face list is what its patch draws with all patches at the list's le
     CHECK(coarse >= 2 * patches);
 }
 
+namespace {
+
+/// Returns how many triangles were held against a cone.
+uint32_t checkBoundsAndCones(const AssetView& asset) {
+    std::vector<uint32_t> scratch(scratchCapacity(asset)), out(3 * size_t(asset.record->maxPatchFaces));
+    std::mt19937 random(3);
+    uint32_t outside = 0, checked = 0;
+    std::vector<uint8_t> levels(asset.patchCount());
+    for (int state = 0; state < 300; ++state) {
+        for (size_t p = 0; p < levels.size(); ++p) {
+            const uint32_t last = state % 2 ? asset.patches[p].coneLevel : asset.levelCount() - 1;
+            levels[p] = uint8_t(random() % 2 ? last : random() % (last + 1));
+        }
+        for (uint32_t p = 0; p < levels.size(); ++p) {
+            const format::PatchRecord& r = asset.patches[p];
+            const glm::vec3 center(r.sphereCenter[0], r.sphereCenter[1], r.sphereCenter[2]);
+            const glm::vec3 axis(r.coneAxis[0], r.coneAxis[1], r.coneAxis[2]);
+            const uint32_t count = buildIndices(asset, p, levels, scratch, out);
+            for (uint32_t i = 0; i < count; ++i) {
+                const glm::vec3 x = asset.positions[out[i]];
+                outside += glm::length(x - center) > r.sphereRadius;
+                for (int k = 0; k < 3; ++k) outside += x[k] < r.boxMin[k] || x[k] > r.boxMax[k];
+            }
+            for (uint32_t i = 0; i < count && levels[p] <= r.coneLevel && r.coneCosine > 0; i += 3) {
+                const glm::dvec3 a(asset.positions[out[i]]), c(asset.positions[out[i + 1]]),
+                    d(asset.positions[out[i + 2]]);
+                const glm::dvec3 n = glm::cross(c - a, d - a);
+                if (glm::length(n) == 0) continue;
+                ++checked;
+                outside += glm::dot(n, glm::dvec3(axis)) < r.coneCosine * glm::length(n);
+            }
+        }
+    }
+    CHECK(outside == 0);
+    return checked;
+}
+
+} // namespace
+
 TEST_CASE("bounds contain every triangle of every state, and cones every normal up to their level") {
     ToyOptions options;
     options.levelCount = 4;
     options.share = 0.2f;
     for (const bool make : {false, true}) {
         options.makeVertices = make;
-        const Baked b = bakeToy(test::sphere(6), 6, options);
-        std::vector<uint32_t> scratch(scratchCapacity(b.asset)), out(3 * size_t(b.asset.record->maxPatchFaces));
-        std::mt19937 random(3);
-        uint32_t outside = 0, cones = 0, checked = 0;
-        std::vector<uint8_t> levels(b.asset.patchCount());
-        for (int state = 0; state < 300; ++state) {
-            for (uint8_t& l : levels) l = uint8_t(random() % 4);
-            for (uint32_t p = 0; p < levels.size(); ++p) {
-                const format::PatchRecord& r = b.asset.patches[p];
-                const glm::vec3 center(r.sphereCenter[0], r.sphereCenter[1], r.sphereCenter[2]);
-                const glm::vec3 axis(r.coneAxis[0], r.coneAxis[1], r.coneAxis[2]);
-                cones += r.coneCosine > 0;
-                const uint32_t count = buildIndices(b.asset, p, levels, scratch, out);
-                for (uint32_t i = 0; i < count; ++i) {
-                    const glm::vec3 x = b.asset.positions[out[i]];
-                    outside += glm::length(x - center) > r.sphereRadius;
-                    for (int k = 0; k < 3; ++k) outside += x[k] < r.boxMin[k] || x[k] > r.boxMax[k];
-                }
-                for (uint32_t i = 0; i < count && levels[p] <= r.coneLevel && r.coneCosine > 0; i += 3) {
-                    const glm::dvec3 a(b.asset.positions[out[i]]), c(b.asset.positions[out[i + 1]]),
-                        d(b.asset.positions[out[i + 2]]);
-                    const glm::dvec3 n = glm::cross(c - a, d - a);
-                    if (glm::length(n) == 0) continue;
-                    ++checked;
-                    outside += glm::dot(n, glm::dvec3(axis)) < r.coneCosine * glm::length(n);
-                }
-            }
+        CHECK(checkBoundsAndCones(bakeToy(test::sphere(6), 6, options).asset) > 0);
+    }
+}
+
+TEST_CASE("bounds and cones hold in the default hierarchy") {
+    std::mt19937 random(5);
+    const auto build = [](const Mesh& mesh, const Segmentation& parts) {
+        const Topology topology = buildTopology(mesh);
+        return buildDefaultHierarchy(mesh, topology, splitPatches(mesh, topology, parts, 0), {});
+    };
+    for (const uint32_t patches : {4u, 9u, 20u}) {
+        for (const float height : {0.01f, 0.03f}) {
+            Model model = test::grid(24);
+            for (glm::vec3& p : model.positions) p.z = height * float(random() % 1000) / 1000;
+            const Baked b = test::assetOf(model, patches, build);
+            REQUIRE_MESSAGE(b.error.empty(), b.error);
+            CHECK(checkBoundsAndCones(b.asset) > 0);
         }
-        CHECK(outside == 0);
-        CHECK(cones > 0);
-        CHECK(checked > 0);
     }
 }
 

@@ -28,13 +28,15 @@ inline bake::AlignedBytes aligned(std::span<const std::byte> bytes) {
     return copy;
 }
 
-inline ToyAsset toyAsset(const bake::Model& model, uint32_t patches, const ToyOptions& options) {
+/// Welds a model, cuts it into slabs, and lays out what `build(mesh, parts)` makes of them.
+template <typename Build>
+ToyAsset assetOf(const bake::Model& model, uint32_t patches, const Build& build) {
     ToyAsset a;
     bake::WeldReport report;
     bake::Status s = bake::weld(model, {}, a.mesh, report);
     if (s.ok()) {
         a.parts = slabs(a.mesh, patches);
-        a.hierarchy = toyHierarchy(a.mesh, a.parts, options);
+        a.hierarchy = build(a.mesh, a.parts);
         s = bake::checkHierarchy(a.mesh, a.hierarchy);
     }
     if (s.ok()) {
@@ -47,6 +49,12 @@ inline ToyAsset toyAsset(const bake::Model& model, uint32_t patches, const ToyOp
     const Status opened = openAll(a.file.span(), a.asset);
     if (!opened.ok()) a.error = opened.message;
     return a;
+}
+
+inline ToyAsset toyAsset(const bake::Model& model, uint32_t patches, const ToyOptions& options) {
+    return assetOf(model, patches, [&](const bake::Mesh& mesh, const bake::Segmentation& parts) {
+        return toyHierarchy(mesh, parts, options);
+    });
 }
 
 /// The small asset of the attacks: three patches, boundaries that collapse, nodes and, if asked for, made

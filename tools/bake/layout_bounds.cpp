@@ -88,13 +88,14 @@ struct Stop {
 
 void stopsOf(const Hierarchy& h, uint32_t wedge, std::vector<Stop>& stops) {
     stops.clear();
-    uint32_t level = 0;
-    while (wedge != kNone) {
+    uint32_t level = 0, domain = kNone;
+    for (; wedge != kNone; wedge = h.wedgeParent[wedge]) {
         const uint32_t p = h.wedgePosition[wedge];
-        // Steps of one level pass at once: only the last stop of a level is ever drawn.
-        if (h.collapseLevel[p] > level) stops.push_back({p, level});
-        level = h.collapseLevel[p];
-        wedge = h.wedgeParent[wedge];
+        // Steps of one level pass at once: only the last stop of a level is ever drawn. But where the domain widens,
+        // a neighbour may hold a stop, however early it collapses.
+        if (h.collapseLevel[p] > level || h.domain[p] != domain) stops.push_back({p, level});
+        level = std::max<uint32_t>(level, h.collapseLevel[p]);
+        domain = h.domain[p];
     }
 }
 
@@ -107,24 +108,30 @@ glm::dvec3 normalOf(const Hierarchy& h, uint32_t a, uint32_t b, uint32_t c) {
 /// Least cosine to the axis of the triangles that appear first at each level.
 class LevelCosines {
 public:
-    LevelCosines(const Hierarchy& h, const glm::vec3& axis) : least(h.levelCount, 1.0), h_(h), axis_(axis) {}
+    LevelCosines(const Hierarchy& h, const glm::vec3& axis)
+        : least(h.levelCount, 1.0), h_(h), axis_(axis), end_(h.levelCount) {}
 
-    std::vector<double> least;
+    std::vector<double> least; ///< of no meaning beyond the first that is not positive: no cone reaches there
 
     /// Every combination of stops: more than the reachable ones, so the cone is safe whatever the neighbours do.
     void addFace(const glm::uvec3& corners) {
         constexpr size_t kMostCombinations = 512;
         for (int k = 0; k < 3; ++k) stopsOf(h_, corners[k], stops_[size_t(k)]);
-        uint32_t cap = h_.levelCount;
+        uint32_t cap = end_;
         while (combinationsBelow(cap) > kMostCombinations) --cap;
-        if (cap < h_.levelCount) least[cap] = -1;
+        if (cap < end_) least[cap] = -1;
         for (const Stop& a : stops_[0]) {
+            if (a.level >= cap) break; // they rise
             for (const Stop& b : stops_[1]) {
+                if (b.level >= cap) break;
                 for (const Stop& c : stops_[2]) {
                     const uint32_t level = std::max({a.level, b.level, c.level});
                     if (level < cap) addTriangle(a.position, b.position, c.position, level);
                 }
             }
+        }
+        for (uint32_t level = 0; level < end_; ++level) {
+            if (least[level] <= 0) end_ = level;
         }
     }
 
@@ -147,6 +154,7 @@ private:
 
     const Hierarchy& h_;
     glm::vec3 axis_;
+    uint32_t end_; ///< first level whose cosine is not positive
     std::array<std::vector<Stop>, 3> stops_;
 };
 

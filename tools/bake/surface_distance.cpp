@@ -16,33 +16,7 @@ double squaredBoxDistance(const glm::dvec3& p, const glm::vec3& low, const glm::
     return glm::dot(d, d);
 }
 
-double squaredLength(const glm::dvec3& v) {
-    return glm::dot(v, v);
-}
-
 } // namespace
-
-double squaredDistance(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-    const glm::dvec3 ab = b - a, ac = c - a, ap = p - a;
-    const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
-    if (d1 <= 0 && d2 <= 0) return squaredLength(ap);
-    const glm::dvec3 bp = p - b;
-    const double d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp);
-    if (d3 >= 0 && d4 <= d3) return squaredLength(bp);
-    const double vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 > d3) return squaredLength(ap - ab * (d1 / (d1 - d3)));
-    const glm::dvec3 cp = p - c;
-    const double d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
-    if (d6 >= 0 && d5 <= d6) return squaredLength(cp);
-    const double vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 > d6) return squaredLength(ap - ac * (d2 / (d2 - d6)));
-    const double va = d3 * d6 - d5 * d4;
-    const double u = d4 - d3, v = d5 - d6;
-    if (va <= 0 && u >= 0 && v >= 0 && u + v > 0) return squaredLength(bp - (c - b) * (u / (u + v)));
-    const double sum = va + vb + vc;
-    if (!(sum > 0)) return std::min({squaredLength(ap), squaredLength(bp), squaredLength(cp)});
-    return squaredLength(ap - ab * (vb / sum) - ac * (vc / sum));
-}
 
 SurfaceDistance::SurfaceDistance(std::vector<Triangle> triangles) : triangles_(std::move(triangles)) {
     if (triangles_.empty()) return;

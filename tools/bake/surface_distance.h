@@ -2,6 +2,7 @@
 
 #include <glm/glm.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -13,7 +14,28 @@ struct Triangle {
 };
 
 /// Squared distance from a point to a triangle (Ericson, Real-Time Collision Detection, 5.1.5).
-double squaredDistance(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
+inline double squaredDistance(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    const auto squared = [](const glm::dvec3& v) { return glm::dot(v, v); };
+    const glm::dvec3 ab = b - a, ac = c - a, ap = p - a;
+    const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
+    if (d1 <= 0 && d2 <= 0) return squared(ap);
+    const glm::dvec3 bp = p - b;
+    const double d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp);
+    if (d3 >= 0 && d4 <= d3) return squared(bp);
+    const double vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 > d3) return squared(ap - ab * (d1 / (d1 - d3)));
+    const glm::dvec3 cp = p - c;
+    const double d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
+    if (d6 >= 0 && d5 <= d6) return squared(cp);
+    const double vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 > d6) return squared(ap - ac * (d2 / (d2 - d6)));
+    const double va = d3 * d6 - d5 * d4;
+    const double u = d4 - d3, v = d5 - d6;
+    if (va <= 0 && u >= 0 && v >= 0 && u + v > 0) return squared(bp - (c - b) * (u / (u + v)));
+    const double sum = va + vb + vc;
+    if (!(sum > 0)) return std::min({squared(ap), squared(bp), squared(cp)});
+    return squared(ap - ab * (vb / sum) - ac * (vc / sum));
+}
 
 /// Nearest-point queries against a triangle soup. Double precision, the same answers on any machine.
 class SurfaceDistance {

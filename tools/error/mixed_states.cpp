@@ -11,6 +11,7 @@ namespace xgc::bake {
 namespace {
 
 constexpr uint32_t kSampledFaces = 128; ///< of a patch, about
+constexpr size_t kFewFaces = 4;         ///< a patch is tried when it is down to one in so many of its faces
 /// How many levels below a patch's own the others are tried at, besides level 0.
 constexpr size_t kMostSteps = 4;
 /// Squared: beyond the farthest sample of a patch, farther points lie.
@@ -70,6 +71,7 @@ void MixedStates::listFaces() {
         if (patch.boundary.empty()) continue; // nobody beside it
         const glm::uvec3 corners = input_.mesh.facePositions(f);
         patch.faces.push_back(corners);
+        ++patch.faceCount;
         if (seen[p]++ % ((counts[p] + kSampledFaces - 1) / kSampledFaces) != 0) continue;
         const uint32_t component = input_.topology.faceComponent[f];
         const glm::dvec3 a = input_.point(corners.x), b = input_.point(corners.y), c = input_.point(corners.z);
@@ -253,6 +255,7 @@ void MixedStates::advance(const DrawnLevel& drawn, const std::vector<uint8_t>& i
         if (patch.boundary.empty()) return;
         Scratch& scratch = scratch_.local();
         follow(patch, level);
+        if (patch.faces.size() * kFewFaces > patch.faceCount) return;
         for (const Rim& rim : rims_) raised[p] = measure(p, rim, raised[p], scratch);
     });
     errors[level] = std::move(raised);

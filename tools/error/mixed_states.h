@@ -17,8 +17,8 @@ namespace xgc::bake {
 ///
 /// A patch at a level is tried with the others at level 0 and at a few levels below its own. Its faces are sampled: the
 /// distance changes no faster than the point, and these states differ from uniform ones where patches are down to a few
-/// triangles, larger than the space between samples. What lies around a patch is the triangles that the others draw at
-/// its boundary, so what is found may be too large, not too small.
+/// triangles, larger than the space between samples, and are tried there alone. What lies around a patch is the
+/// triangles that the others draw at its boundary, so what is found may be too large, not too small.
 class MixedStates {
 public:
     MixedStates(const MeasuredInput& input, const TrackedMap& map, const DrawnLevel& base);
@@ -51,6 +51,7 @@ private:
     struct PatchState {
         std::vector<uint32_t> boundary; ///< its boundary vertices, as numbered
         std::vector<uint32_t> adjacent; ///< patches that it shares a domain with
+        size_t faceCount = 0;           ///< of the input
         std::vector<glm::uvec3> faces;  ///< drawn by the patch alone: positions
         std::vector<Sample> samples;
         std::vector<Gone> gone; ///< by position
