@@ -108,8 +108,8 @@ TEST_CASE("patches of narrow and of wide slots survive compression") {
 
 TEST_CASE("the bundled models survive compression bit for bit") {
     using bake::BundledModel;
-    for (const BundledModel which :
-         {BundledModel::creature, BundledModel::shaft, BundledModel::terrain, BundledModel::temple}) {
+    for (const BundledModel which : {BundledModel::creature, BundledModel::shaft, BundledModel::terrain,
+                                     BundledModel::temple, BundledModel::tree}) {
         bake::Model model = bake::makeModel(which, 6000);
         std::fill(model.triangleMaterial.begin(), model.triangleMaterial.end(), 0u); // slabs know no materials
         test::ToyOptions options;

@@ -17,7 +17,7 @@ using namespace xgc::bake;
 namespace {
 
 constexpr BundledModel kAll[] = {BundledModel::creature, BundledModel::shaft, BundledModel::terrain,
-                                 BundledModel::temple};
+                                 BundledModel::temple, BundledModel::tree};
 
 struct Welded {
     Mesh mesh;
@@ -152,6 +152,7 @@ TEST_CASE("normals agree with the faces") {
     CHECK(areaAgainstNormals(makeModel(BundledModel::shaft, 60000)) == 0);
     CHECK(areaAgainstNormals(makeModel(BundledModel::terrain, 60000)) < 0.003);
     CHECK(areaAgainstNormals(makeModel(BundledModel::temple, 100000)) < 0.01);
+    CHECK(areaAgainstNormals(makeModel(BundledModel::tree, 50000)) < 0.03);
 }
 
 TEST_CASE("the creature is one closed manifold at any size") {
@@ -259,6 +260,29 @@ TEST_CASE("the temple has pieces, materials, uv seams, closed and open component
     }
 }
 
+TEST_CASE("the tree is one closed skin of bark, and leaf cards that are each an open piece of two triangles") {
+    for (const uint32_t faces : {200u, 5000u, 50000u}) {
+        const Model model = makeModel(BundledModel::tree, faces);
+        const Welded w = welded(model);
+        CAPTURE(faces);
+        CHECK(isManifold(w));
+        std::vector<uint32_t> borders(w.topology.componentCount, 0), sizes(w.topology.componentCount, 0);
+        for (uint32_t f = 0; f < w.mesh.faceCount(); ++f) {
+            ++sizes[w.topology.faceComponent[f]];
+            for (int k = 0; k < 3; ++k) {
+                borders[w.topology.faceComponent[f]] +=
+                    uint32_t(w.topology.facesOfEdge(w.topology.faceEdges[f][k]).size() == 1);
+            }
+        }
+        const auto closed = std::count(borders.begin(), borders.end(), 0u);
+        const auto cards = std::count(sizes.begin(), sizes.end(), 2u);
+        CHECK(closed == 1);
+        CHECK(cards + 1 == std::ptrdiff_t(borders.size()));
+        CHECK(std::count(borders.begin(), borders.end(), 4u) == cards);
+        if (faces == 50000) CHECK(std::abs(double(cards) - 20000) < 500);
+    }
+}
+
 TEST_CASE("limits of faces are clamped") {
     CHECK(makeModel(BundledModel::terrain, 0).triangles.size() >= 180);
 }
@@ -270,6 +294,7 @@ TEST_CASE("models are the same bits on any machine and compiler") {
         {BundledModel::shaft, {0x31eefdce2ddc6ac6, 0x851892bc17643abe}},
         {BundledModel::terrain, {0xcacdfca1e0e52bf0, 0xf78f912301b0810f}},
         {BundledModel::temple, {0xa2c61b5d1ebbf10d, 0xd30c7cf28299de9a}},
+        {BundledModel::tree, {0x1e16f1511d01da03, 0xf44409a47f462600}},
     };
     for (const auto& entry : golden) {
         const BundledModel which = entry.first;

@@ -17,6 +17,8 @@ Model makeModel(BundledModel which, uint32_t faces) {
         return models::makeTerrain(faces);
     case BundledModel::temple:
         return models::makeTemple(faces);
+    case BundledModel::tree:
+        return models::makeTree(faces);
     }
     return {};
 }

@@ -12,10 +12,9 @@ namespace xgc::tool {
 namespace {
 
 const std::map<std::string, bake::BundledModel> kModels = {
-    {"creature", bake::BundledModel::creature},
-    {"shaft", bake::BundledModel::shaft},
-    {"terrain", bake::BundledModel::terrain},
-    {"temple", bake::BundledModel::temple},
+    {"creature", bake::BundledModel::creature}, {"shaft", bake::BundledModel::shaft},
+    {"terrain", bake::BundledModel::terrain},   {"temple", bake::BundledModel::temple},
+    {"tree", bake::BundledModel::tree},
 };
 
 struct Options {
@@ -46,9 +45,9 @@ bake::Status makeAndWrite(const Options& options) {
 void addModel(CLI::App& app, Run& run) {
     CLI::App* sub = app.add_subcommand("model", "Make one of the bundled models");
     const auto options = std::make_shared<Options>();
-    sub->add_option("model", options->model, "creature, shaft, terrain or temple")
+    sub->add_option("model", options->model, "creature, shaft, terrain, temple or tree")
         ->required()
-        ->check(CLI::IsMember(std::vector<std::string>{"creature", "shaft", "terrain", "temple"}));
+        ->check(CLI::IsMember(std::vector<std::string>{"creature", "shaft", "terrain", "temple", "tree"}));
     sub->add_option("-o,--output", options->output, "File to write: .glb, .obj or .ply")->required();
     sub->add_option("--faces", options->faces, "About how many triangles")->capture_default_str();
     sub->add_flag("--quiet", options->quiet, "Print nothing but errors");

@@ -10,6 +10,7 @@ enum class BundledModel {
     shaft,    ///< a turned machine part with grooves, keyway, hexagon and splines: closed, hard creases
     terrain,  ///< an open height field with mountains and a river: uvs, vertex colours
     temple,   ///< many pieces by name, five materials, uv seams; closed stones, open roof and ground
+    tree,     ///< closed bark and thousands of leaf cards, open pieces of two triangles each
 };
 
 /// Faces that can be asked for.
