@@ -10,9 +10,10 @@ int main(int argc, char** argv) {
         const char* name;
         int (*run)(const Flags&);
     };
-    const std::vector<Section> sections{
-        {"quality", benchQuality}, {"optimal", benchOptimal}, {"attributes", benchAttributes}, {"parts", benchParts},
-        {"speed", benchSpeed},     {"memory", benchMemory},   {"indices", benchIndices}};
+    const std::vector<Section> sections{{"quality", benchQuality},       {"optimal", benchOptimal},
+                                        {"attributes", benchAttributes}, {"parts", benchParts},
+                                        {"speed", benchSpeed},           {"memory", benchMemory},
+                                        {"indices", benchIndices},       {"foliage", benchFoliage}};
     std::vector<std::string> names;
     for (const Section& s : sections) names.push_back(s.name);
     Flags flags;

@@ -20,5 +20,7 @@ int benchSpeed(const Flags& flags);
 int benchMemory(const Flags& flags);
 /// Vertex cache and overfetch of the index lists, and the speed of building them.
 int benchIndices(const Flags& flags);
+/// Area of a tree's leaves, level by level.
+int benchFoliage(const Flags& flags);
 
 } // namespace xgc::bench

@@ -35,7 +35,7 @@ void BoundaryCollapser::run(uint32_t level, double limit) {
     while (queue_.hasBelow(limit)) {
         const CollapseQueue::Entry entry = queue_.pop();
         const uint32_t v = entry.vertex;
-        if (entry.stamp != stamp_[v] || state_.parent[v] != kNone) continue;
+        if (entry.stamp != stamp_[v] || state_.parent[v] != kNone || std::isinf(state_.costScale[v])) continue;
         const Outcome outcome = tryCollapse(v, target_[v], level);
         if (outcome == Outcome::done) continue;
         if (outcome == Outcome::heldByMixed) held_.push_back(v);
@@ -124,6 +124,10 @@ BoundaryCollapser::Outcome BoundaryCollapser::tryCollapse(uint32_t vertex, uint3
             return Outcome::refused;
         }
     }
+    if (!state_.guard.isEmpty() && guards(vertex, target, meets)) {
+        ++counts_.linkRefused;
+        return Outcome::refused;
+    }
     domain_ = state_.domain[vertex];
     const Outcome outcome = meets ? tryMeeting(vertex, target, level)
                                   : checkFaces(vertex, vertex, {vertex, target, level, domain_, true}, wedges_);
@@ -137,6 +141,32 @@ BoundaryCollapser::Outcome BoundaryCollapser::tryCollapse(uint32_t vertex, uint3
         collapse(vertex, target, level);
     }
     return outcome;
+}
+
+/// Whether the vertex's piece would lose too much. Needs the stars of both that `isLinked` gathered.
+bool BoundaryCollapser::guards(uint32_t vertex, uint32_t target, bool meets) {
+    const uint32_t piece = state_.guard.pieceOf(vertex);
+    if (piece == PieceGuard::kUnguarded) return false;
+    const glm::dvec3 point =
+        meets ? meetingOf(state_, attributes_, placement_, vertex, target, wedges_.pairs().front()).point
+              : state_.point(target);
+    areaLost_ = areaLost(vertex, target, point);
+    return !state_.guard.mayLose(piece, areaLost_);
+}
+
+/// Around two vertices that both go to a point.
+double BoundaryCollapser::areaLost(uint32_t vertex, uint32_t target, const glm::dvec3& point) const {
+    double lost = 0;
+    const auto add = [&](uint32_t center, const StarFace& f, bool dies) {
+        const glm::dvec3 n = state_.point(f.next), p = state_.point(f.previous), c = state_.point(center);
+        lost += glm::length(glm::cross(n - c, p - c)) / 2;
+        if (!dies) lost -= glm::length(glm::cross(n - point, p - point)) / 2;
+    };
+    for (const StarFace& f : star_) add(vertex, f, f.next == target || f.previous == target);
+    for (const StarFace& f : otherStar_) {
+        if (f.next != vertex && f.previous != vertex) add(target, f, false);
+    }
+    return lost;
 }
 
 double BoundaryCollapser::costOf(uint32_t vertex, const StarEdge& edge) const {
@@ -306,6 +336,9 @@ void BoundaryCollapser::retire(uint32_t vertex, uint32_t parent, const WedgeMap&
         }
     }
     std::swap(state_.groupNext[vertex], state_.groupNext[parent]);
+    if (const uint32_t piece = state_.guard.pieceOf(vertex); piece != PieceGuard::kUnguarded) {
+        state_.guard.lose(piece, std::exchange(areaLost_, 0.0));
+    }
     auto &from = state_.starOf(vertex), &to = state_.starOf(parent);
     to.insert(to.end(), from.begin(), from.end());
     from = {};

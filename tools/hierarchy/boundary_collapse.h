@@ -40,6 +40,8 @@ private:
     Outcome tryCollapse(uint32_t vertex, uint32_t target, uint32_t level);
     bool mapWedges(uint32_t vertex, uint32_t target);
     bool isLinked(uint32_t target);
+    bool guards(uint32_t vertex, uint32_t target, bool meets);
+    double areaLost(uint32_t vertex, uint32_t target, const glm::dvec3& point) const;
     Outcome checkFaces(uint32_t vertex, uint32_t other, const StateCheck::Move& move, const WedgeMap& wedges);
     bool widen();
     void collapse(uint32_t vertex, uint32_t target, uint32_t level);
@@ -71,6 +73,7 @@ private:
 
     StateCheck check_;
     uint32_t domain_ = 0; ///< of the step that is tried
+    double areaLost_ = 0; ///< by it, where its piece is guarded
     WedgeMap wedges_, vertexWedges_, targetWedges_;
     std::vector<StarFace> star_, otherStar_;
     std::vector<StarEdge> edges_;

@@ -3,6 +3,7 @@
 #include "hierarchy/boundary_collapse.h"
 #include "hierarchy/hierarchy_of.h"
 #include "hierarchy/interior_collapse.h"
+#include "hierarchy/merge_cards.h"
 #include "hierarchy/patch_colors.h"
 #include "hierarchy/surface_state.h"
 #include "hierarchy/vanish_components.h"
@@ -39,7 +40,8 @@ class Builder {
 public:
     Builder(const Mesh& mesh, const Topology& topology, const PatchAssignment& assignment,
             const HierarchyOptions& options)
-        : assignment_(assignment), state_(mesh, topology, assignment), attributes_(state_, options) {
+        : assignment_(assignment), state_(mesh, topology, assignment), attributes_(state_, options),
+          pieces_(mesh, topology) {
         initQuadrics(topology, assignment, state_);
         for (const Quadric& q : state_.quadrics) weight_ += q.weight;
         standing_ = double(state_.quadrics.size());
@@ -50,14 +52,16 @@ public:
         for (uint32_t p = 0; p < state_.patches.size(); ++p)
             interiors_.emplace_back(state_, attributes_, p, options.placement);
         boundary_ = std::make_unique<BoundaryCollapser>(state_, attributes_, interiors_, options.placement);
+        cards_ = std::make_unique<CardMerger>(pieces_, assignment, state_);
         vanisher_ = std::make_unique<ComponentVanisher>(
-            topology, assignment.facePatch, state_,
-            square(levelError(options.firstError * state_.diagonal, options.maxLevels)));
+            pieces_, assignment.facePatch, state_,
+            square(levelError(options.firstError * state_.diagonal, options.maxLevels)),
+            [this](uint32_t piece) { return cards_->isCard(piece); });
     }
 
     CollapseCounts buildLevel(uint32_t level, double squaredError) {
         CollapseCounts counts;
-        counts.collapses = vanisher_->run(level, squaredError);
+        for (const uint32_t v : cards_->release(squaredError)) boundary_->markDirty(v);
         // A cost is a mean squared distance times the root of a weight.
         const double limit = squaredError * std::sqrt(weight_ / standing_);
         for (int round = 0; round < kMostRounds; ++round) {
@@ -73,6 +77,9 @@ public:
         takeTouched();
         boundary_->runWidening(level, limit);
         counts.add(boundary_->takeCounts());
+        // Last, when pieces are as small as the level makes them.
+        counts.collapses += cards_->run(level, squaredError);
+        counts.collapses += vanisher_->run(level, squaredError);
         standing_ -= counts.collapses;
         return counts;
     }
@@ -125,6 +132,8 @@ private:
     double standing_ = 0; ///< vertices of the uniform state, about: components that vanish count as one
     std::vector<InteriorCollapser> interiors_;
     std::unique_ptr<BoundaryCollapser> boundary_;
+    const Pieces pieces_;
+    std::unique_ptr<CardMerger> cards_;
     std::unique_ptr<ComponentVanisher> vanisher_;
 };
 

@@ -167,6 +167,7 @@ uint32_t SurfaceState::draft(uint32_t room, const glm::dvec3& at, uint32_t v, ui
     quadrics[x].add(quadrics[w]);
     costScale[x] = std::max(costScale[v], costScale[w]);
     domain[x] = domain[v];
+    guard.inherit(x, v);
     return x;
 }
 
@@ -196,6 +197,7 @@ void SurfaceState::classify(const Topology& topology) {
 
 void SurfaceState::makeBoundary(uint32_t position) {
     isBoundary[position] = 1;
+    guard.joinRim(position);
     starNumber[position] = uint32_t(stars.size());
     stars.emplace_back();
     forGroupCorners(position, [&](uint32_t patch, uint32_t c) { stars.back().push_back({patch, c}); });

@@ -2,6 +2,7 @@
 
 #include "hierarchy/domain_sets.h"
 #include "hierarchy/patch_mesh.h"
+#include "hierarchy/piece_guard.h"
 #include "hierarchy/quadric.h"
 
 #include <xgc/bake/patches.h>
@@ -49,6 +50,7 @@ struct SurfaceState {
     std::vector<double> costScale;        ///< importance squared; infinite: locked
 
     DomainSets domains;
+    PieceGuard guard;
 
     // A wedge each.
     std::vector<uint32_t> wedgePosition;
