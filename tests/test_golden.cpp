@@ -24,7 +24,8 @@ constexpr uint32_t kFaces = 6000;
 const std::map<std::string, BundledModel> kModels = {{"creature", BundledModel::creature},
                                                      {"shaft", BundledModel::shaft},
                                                      {"terrain", BundledModel::terrain},
-                                                     {"temple", BundledModel::temple}};
+                                                     {"temple", BundledModel::temple},
+                                                     {"tree", BundledModel::tree}};
 
 struct Variant {
     const char* name;
