@@ -6,9 +6,6 @@
 namespace xgc::bench {
 namespace {
 
-// Weights with which attributes enter the cost, see HierarchyOptions.
-constexpr double kNormalWeight = 0.05, kUvWeight = 0.05;
-
 std::vector<Source> sourcesOf(const Flags& flags) {
     std::vector<Source> sources{{"temple", {}, 60'000}, {"terrain", {}, 60'000, false, true}};
     if (flags.data.empty()) return sources;
@@ -46,8 +43,6 @@ int benchAttributes(const Flags& flags) {
             }
             bake::HierarchyOptions options;
             options.placement = p;
-            options.normalWeight = kNormalWeight;
-            options.uvWeight = kUvWeight;
             for (const Comparison& c : compareLevels(flags, subject, options, true)) {
                 if (flags.each) print(c);
                 const AttributeDeviation &a = c.ours.attributes, &b = c.theirs.attributes;

@@ -24,6 +24,7 @@ namespace {
 struct Work {
     Model model;
     Mesh mesh;
+    bool hasNormals = false; ///< the input's, not made here
     Topology topology;
     Segmentation parts;
     Hierarchy hierarchy;
@@ -46,6 +47,7 @@ Status prepareMesh(const BakeOptions& options, Work& work, BakeReport& report) {
     if (Status s = weld(work.model, options.weld, work.mesh, report.weld); !s.ok()) return s;
     work.model = Model{};
     work.topology = buildTopology(work.mesh);
+    work.hasNormals = !work.mesh.attributes.normals.empty();
     addMissingNormals(work.mesh, work.topology);
     report.faces = work.mesh.faceCount();
     report.vertices = uint32_t(work.mesh.wedgePosition.size());
@@ -90,6 +92,7 @@ Status buildHierarchy(const BakeOptions& options, Work& work, BakeReport& report
         work.hierarchy = buildThesisHierarchy(work.mesh, work.topology, work.parts, options.thesis, &report.levels);
     } else {
         HierarchyOptions hierarchy = options.hierarchy;
+        if (!work.hasNormals) hierarchy.normalWeight = 0; // made from the shape, which counts already
         if (Status s = findImportances(options, work.mesh, work.parts, hierarchy); !s.ok()) return s;
         const PatchAssignment patches = splitPatches(work.mesh, work.topology, work.parts, options.patchFaces);
         work.hierarchy = buildDefaultHierarchy(work.mesh, work.topology, patches, hierarchy, &report.levels);

@@ -224,7 +224,7 @@ void addBake(CLI::App& app, Run& run) {
         ->check(CLI::Range(1, 200))
         ->capture_default_str();
     bake->add_option("--normal-weight", arguments->options.hierarchy.normalWeight,
-                     "Cost of a normal turned by 1 rad, in diagonals of the model")
+                     "Cost of a normal of the input turned by 1 rad, in diagonals of the model")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
     bake->add_option("--uv-weight", arguments->options.hierarchy.uvWeight, "Cost of a UV moved by 1, in diagonals")

@@ -18,10 +18,11 @@ struct HierarchyOptions {
     /// Error of level 1 in diagonals of the mesh's box; each further level allows sqrt 2 times the one before.
     double firstError = 2e-5;
     /// Weights of attribute deviation in the cost, in lengths relative to the box's diagonal: a normal turned by 1 rad,
-    /// a UV moved by 1, a colour by 1 cost as much as that length. 0: only the wedges' map counts.
-    double normalWeight = 0;
-    double uvWeight = 0;
-    double colorWeight = 0;
+    /// a UV moved by 1, a colour by 1 cost as much as that length. 0: only the wedges' map counts. The defaults are as
+    /// large as they can be at no loss of shape (bench_hierarchy --attributes).
+    double normalWeight = 5e-4;
+    double uvWeight = 0.2;
+    double colorWeight = 0.02;
     /// Per part: its costs are multiplied by this squared (2: half the error at the same level). Empty: all 1.
     std::vector<float> partImportance;
     /// Per position: its cost is multiplied by this squared; infinity locks it. Empty: all 1.
