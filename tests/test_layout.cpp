@@ -196,6 +196,44 @@ TEST_CASE("a face list is what its patch draws with all patches at the list's le
     CHECK(coarse >= 2 * patches);
 }
 
+TEST_CASE("domains are cut by how long their vertices live, and no parent lies behind its child") {
+    ToyOptions options;
+    options.levelCount = 12;
+    options.share = 0.25f;
+    const Baked b = bakeToy(test::sphere(24), 5, options);
+    const AssetView& a = b.asset;
+    std::vector<uint8_t> lastLevel(a.collapseLevels.begin(), a.collapseLevels.end());
+    uint32_t cut = 0, falling = 0;
+    for (uint32_t p = 0; p < a.patchCount(); ++p) {
+        std::vector<uint32_t> rows;
+        const auto append = [&](format::VertexRange range) {
+            for (uint32_t k = 0; k < range.count; ++k) rows.push_back(range.first + k);
+        };
+        for (const uint32_t d : a.domainsOf(p)) append(a.domainRange(d));
+        append(a.interiorRange(p));
+        for (size_t slot = rows.size(); slot-- > 0;) {
+            const uint32_t up = rows[a.parentsNarrow[a.patches[p].firstParent + slot]];
+            falling += up > rows[slot];
+            lastLevel[up] = std::max(lastLevel[up], lastLevel[rows[slot]]);
+        }
+    }
+    CHECK(falling == 0);
+    // Pieces of one domain: what lives longest comes first.
+    const auto of = [&](uint32_t d) { return std::vector<uint32_t>(a.patchesOf(d).begin(), a.patchesOf(d).end()); };
+    for (uint32_t d = 0; d < a.domains.size(); ++d) {
+        for (uint32_t e = d + 1; e < a.domains.size(); ++e) {
+            if (of(d) != of(e)) continue;
+            ++cut;
+            const auto levels = [&](uint32_t domain) {
+                const format::VertexRange r = a.domainRange(domain);
+                return std::minmax_element(lastLevel.begin() + r.first, lastLevel.begin() + r.first + r.count);
+            };
+            CHECK(*levels(d).first > *levels(e).second);
+        }
+    }
+    CHECK(cut > 0);
+}
+
 namespace {
 
 /// Returns how many triangles were held against a cone.

@@ -64,12 +64,6 @@ Status checkLevels(const AssetView& v) {
     return {};
 }
 
-/// Widest first, then by patches: so that a domain that includes another comes before it.
-bool domainsInOrder(std::span<const uint32_t> a, std::span<const uint32_t> b) {
-    if (a.size() != b.size()) return a.size() > b.size();
-    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-}
-
 Status checkDomains(const AssetView& v) {
     uint64_t next = 0;
     for (uint32_t d = 0; d < v.domains.size(); ++d) {
@@ -80,7 +74,6 @@ Status checkDomains(const AssetView& v) {
         const std::span<const uint32_t> patches = v.patchesOf(d);
         if (!rising(patches) || patches.back() >= v.record->patchCount)
             return corrupt("domain with patches out of order or range", d);
-        if (d > 0 && !domainsInOrder(v.patchesOf(d - 1), patches)) return corrupt("domain out of order", d);
         if (domain.pageGroup != 0) return corrupt("domain of a page group that is not there", d);
     }
     if (next != v.domainPatches.size()) return corrupt("section domainPatches holds more than the domains do");

@@ -10,8 +10,8 @@
 #endif
 
 // A patch is drawn in two steps. First every slot that the faces name gets its representative: the slots of each
-// domain, widest first, then those of the interior. A parent always has a lower slot, and the rows alive at a level
-// are a prefix of each range, so one pass forward resolves all chains:
+// domain, in the file's order, then those of the interior. A parent always has a lower slot, and the rows alive at a
+// level are a prefix of each range, so one pass forward resolves all chains:
 //
 //   slots  [ domain a      | domain b   | interior               ]
 //   alive  [ #####.....    | ###....    | ##########............ ]     # : itself   . : rep[parent]

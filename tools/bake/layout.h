@@ -11,11 +11,11 @@
 
 namespace xgc::bake::layout {
 
-/// Domains of two patches or more in the file's order. A domain of one patch has its rows in that patch's interior.
+/// Domains of two patches or more in the file's order, each cut into up to four by the levels to which its vertices
+/// live. A domain of one patch has its rows in that patch's interior.
 struct Domains {
-    std::vector<std::vector<uint32_t>> sets;
-    /// Per domain of the hierarchy its *group*: an index in `sets`, or sets.size() + patch. kNone where no face uses
-    /// it.
+    std::vector<std::vector<uint32_t>> sets; ///< equal ones where a domain is cut
+    /// Per position its *group*: an index in `sets`, or sets.size() + patch. kNone where no face uses it.
     std::vector<uint32_t> groupOf;
     std::vector<std::vector<uint32_t>> ofPatch; ///< rising
 };

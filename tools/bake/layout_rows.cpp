@@ -1,12 +1,22 @@
 #include "bake/layout.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <tuple>
 
 // Order of domains and of vertex rows. Rows lie in groups (the domains, then the interiors of the patches), each by
 // collapse level descending, so that the rows alive at a level are a prefix. Within a group a parent never collapses
 // before its child, so only among equal levels parents must be put before children by hand.
+//
+// Domains are small: at a coarse level a few vertices of each are left, and whatever fetches them fetches the dead ones
+// behind them too. So the rows of a domain are cut by the levels to which they live, and what lives long in all domains
+// lies together:
+//
+//   one tier      [ a: ##..... | b: #.... | c: ##...... | ... ]                       # : alive at a coarse level
+//   two tiers     [ a: ## | b: # | c: ## | ... ]  [ a: ..... | b: .... | c: ...... | ... ]
+//
+// To a reader each piece is a domain, of the same patches.
 
 namespace xgc::bake::layout {
 namespace {
@@ -56,14 +66,62 @@ public:
 private:
     bool alike(uint32_t a, uint32_t b) const {
         const uint32_t p = h_.wedgePosition[a], q = h_.wedgePosition[b];
-        return h_.collapseLevel[p] == h_.collapseLevel[q] &&
-               domains_.groupOf[h_.domain[p]] == domains_.groupOf[h_.domain[q]];
+        return h_.collapseLevel[p] == h_.collapseLevel[q] && domains_.groupOf[p] == domains_.groupOf[q];
     }
 
     const Hierarchy& h_;
     const Domains& domains_;
     std::vector<uint32_t> depth_;
     std::vector<uint32_t> path_;
+};
+
+// Tiers ------------------------------------------------------------------------------------------------------------
+
+/// For each position the last level to which it or any vertex that collapses into it lives: a parent's is never below
+/// its child's, which collapse levels alone do not promise between domains.
+std::vector<uint8_t> lastLevels(const Hierarchy& h, const std::vector<uint8_t>& used) {
+    std::vector<uint8_t> last = h.collapseLevel;
+    for (uint32_t w = 0; w < used.size(); ++w) {
+        const uint8_t level = last[h.wedgePosition[w]];
+        for (uint32_t up = used[w] ? h.wedgeParent[w] : kNone; up != kNone; up = h.wedgeParent[up]) {
+            uint8_t& upper = last[h.wedgePosition[up]];
+            if (upper >= level) break;
+            upper = level;
+        }
+    }
+    return last;
+}
+
+/// For each position its tier, 0 the coarsest: half the vertices of a tier live on into the next coarser one.
+std::vector<uint8_t> findTiers(const Hierarchy& h, const std::vector<uint8_t>& used) {
+    constexpr uint32_t kRatio = 2, kMostTiers = 4;
+    std::vector<uint8_t> tiers = lastLevels(h, used);
+    std::array<uint32_t, 256> dying{};
+    for (uint32_t w = 0; w < used.size(); ++w) dying[tiers[h.wedgePosition[w]]] += used[w];
+    uint32_t alive = std::accumulate(dying.begin(), dying.end(), 0u), atCut = alive;
+    std::array<uint8_t, 256> tierOf{}; // the finest is 0 here
+    uint8_t tier = 0;
+    for (uint32_t level = 1; level < dying.size(); ++level) {
+        if (uint64_t(alive) * kRatio <= atCut && tier + 1u < kMostTiers) {
+            ++tier;
+            atCut = alive;
+        }
+        tierOf[level] = tier;
+        alive -= dying[level];
+    }
+    for (uint8_t& t : tiers) t = uint8_t(tier - tierOf[t]);
+    return tiers;
+}
+
+/// The rows of a domain in one tier, in the file's order.
+struct TierOfDomain {
+    uint8_t tier;
+    const std::vector<uint32_t>* patches;
+
+    bool operator<(const TierOfDomain& other) const {
+        return tier != other.tier ? tier < other.tier : widerFirst(*patches, *other.patches);
+    }
+    bool operator==(const TierOfDomain& other) const { return tier == other.tier && *patches == *other.patches; }
 };
 
 } // namespace
@@ -79,24 +137,27 @@ std::vector<uint8_t> usedWedges(const Mesh& mesh, const Hierarchy& h) {
 }
 
 Domains orderDomains(const Hierarchy& h, const std::vector<uint8_t>& used) {
-    std::vector<uint8_t> isUsed(h.domainPatches.size(), 0);
-    for (size_t w = 0; w < used.size(); ++w) {
-        if (used[w]) isUsed[h.domain[h.wedgePosition[w]]] = 1;
+    const std::vector<uint8_t> tiers = findTiers(h, used);
+    const auto isShared = [&](uint32_t p) { return h.domainPatches[h.domain[p]].size() > 1; };
+    std::vector<TierOfDomain> all;
+    std::vector<uint32_t> positions; // that are used
+    std::vector<uint8_t> seen(h.positions.size(), 0);
+    for (uint32_t w = 0; w < used.size(); ++w) {
+        const uint32_t p = h.wedgePosition[w];
+        if (!used[w] || seen[p]++) continue;
+        positions.push_back(p);
+        if (isShared(p)) all.push_back({tiers[p], &h.domainPatches[h.domain[p]]});
     }
-    Domains domains;
-    for (size_t d = 0; d < isUsed.size(); ++d) {
-        if (isUsed[d] && h.domainPatches[d].size() > 1) domains.sets.push_back(h.domainPatches[d]);
-    }
-    std::sort(domains.sets.begin(), domains.sets.end(), widerFirst);
-    domains.sets.erase(std::unique(domains.sets.begin(), domains.sets.end()), domains.sets.end());
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
 
-    domains.groupOf.assign(isUsed.size(), kNone);
-    for (size_t d = 0; d < isUsed.size(); ++d) {
-        if (!isUsed[d]) continue;
-        const std::vector<uint32_t>& set = h.domainPatches[d];
-        const auto found = std::lower_bound(domains.sets.begin(), domains.sets.end(), set, widerFirst);
-        domains.groupOf[d] =
-            set.size() > 1 ? uint32_t(found - domains.sets.begin()) : uint32_t(domains.sets.size()) + set.front();
+    Domains domains;
+    for (const TierOfDomain& d : all) domains.sets.push_back(*d.patches);
+    domains.groupOf.assign(h.positions.size(), kNone);
+    for (const uint32_t p : positions) {
+        const std::vector<uint32_t>& set = h.domainPatches[h.domain[p]];
+        const auto found = std::lower_bound(all.begin(), all.end(), TierOfDomain{tiers[p], &set});
+        domains.groupOf[p] = isShared(p) ? uint32_t(found - all.begin()) : uint32_t(all.size()) + set.front();
     }
     domains.ofPatch.resize(h.patches.size());
     for (uint32_t d = 0; d < domains.sets.size(); ++d) {
@@ -116,7 +177,7 @@ Rows orderRows(const Mesh& mesh, const Hierarchy& h, const Domains& domains, con
     for (uint32_t w = 0; w < rank.size(); ++w) {
         if (rank[w] == kNone) continue;
         const uint32_t p = h.wedgePosition[w];
-        keys.push_back({domains.groupOf[h.domain[p]], 255u - h.collapseLevel[p], depths.of(w), rank[w], w});
+        keys.push_back({domains.groupOf[p], 255u - h.collapseLevel[p], depths.of(w), rank[w], w});
     }
     std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) { return a.tied() < b.tied(); });
 

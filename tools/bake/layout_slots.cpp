@@ -27,7 +27,7 @@ public:
         return slot + rows_.ranges[interior].count;
     }
     uint32_t slotOf(uint32_t wedge) const {
-        const uint32_t group = domains_.groupOf[h_.domain[h_.wedgePosition[wedge]]];
+        const uint32_t group = domains_.groupOf[h_.wedgePosition[wedge]];
         return firstSlot_[group] + rows_.rowOf[wedge] - rows_.ranges[group].first;
     }
 

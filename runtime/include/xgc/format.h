@@ -23,7 +23,7 @@ inline constexpr uint32_t kMaxTiers = 8;
 enum class SectionId : uint32_t {
     asset = 1,           ///< one AssetRecord
     levels = 2,          ///< LevelRecord[levelCount]
-    domains = 4,         ///< DomainRecord[domainCount], widest first
+    domains = 4,         ///< DomainRecord[domainCount], parents' before children's
     domainPatches = 5,   ///< u32[]: patches of each domain, rising
     vertexRanges = 6,    ///< VertexRange[(domainCount + patchCount) * tierCount]
     patches = 7,         ///< PatchRecord[patchCount], by part
