@@ -43,6 +43,8 @@ Json levelJson(const HierarchyLevelReport& level, float error) {
             {"linkRefused", level.linkRefused},
             {"flipRefused", level.flipRefused},
             {"wedgeRefused", level.wedgeRefused},
+            {"area", level.area},
+            {"sheetArea", level.sheetArea},
             {"seconds", level.seconds}};
 }
 

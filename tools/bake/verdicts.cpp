@@ -127,6 +127,39 @@ void judgeParts(BakeReport& report) {
     }
 }
 
+/// Errors of a few pixels where the asset is 128 high.
+constexpr double kFewPixels = 4.0 / 128;
+/// Area that small open pieces should keep there; and their share of the whole from which on they matter.
+constexpr double kKeptArea = 0.9, kFoliageShare = 0.05;
+
+/// Names the level at which leaves and the like are thinnest while the error is still small.
+void judgeFoliage(BakeReport& report) {
+    const std::vector<HierarchyLevelReport>& levels = report.levels;
+    if (levels.empty() || levels[0].sheetArea <= kFoliageShare * levels[0].area) return;
+    size_t thinnest = 0;
+    for (size_t l = 0; l < levels.size() && report.levelErrors[l] <= kFewPixels * report.diagonal; ++l) {
+        if (levels[l].sheetArea < levels[thinnest].sheetArea) thinnest = l;
+    }
+    const double kept = levels[thinnest].sheetArea / levels[0].sheetArea;
+    if (kept >= kKeptArea) return;
+    report.verdicts.push_back(
+        {Severity::warning,
+         fmt::format("small open pieces thin out: level {} keeps {:.0f} % of their area", thinnest, 100 * kept),
+         "build", "give leaves one normal and UV a corner, and parts of many (--parts material)"});
+}
+
+/// Pieces that the segmentation leaves apart make patches of their own.
+void judgePartCount(const BakeOptions& options, BakeReport& report) {
+    constexpr uint32_t kManyParts = 1000, kFewFaces = 16;
+    if (options.parts != PartSource::thesis || report.parts < kManyParts) return;
+    if (report.parts > report.faces / kFewFaces) {
+        report.verdicts.push_back(
+            {Severity::warning,
+             fmt::format("{} parts for {} faces: each loose piece is one", report.parts, report.faces), "segment",
+             "bake with --parts material"});
+    }
+}
+
 /// Says what holds an asset up that does not become small.
 void judgeFloor(const BakeOptions& options, BakeReport& report) {
     if (report.faces > 0 && !isSmall(options, report) && report.levels.size() < 2) {
@@ -150,6 +183,8 @@ void judge(const BakeOptions& options, BakeReport& report) {
     judgeInput(options, report);
     judgeSeams(options, report);
     judgeSegmentation(report);
+    judgePartCount(options, report);
+    judgeFoliage(report);
     judgeFloor(options, report);
 }
 

@@ -13,6 +13,7 @@
 #include <cassert>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <numbers>
 
@@ -85,6 +86,10 @@ public:
     }
 
     double diagonal() const { return state_.diagonal; }
+    /// Whether a face is of a small open piece.
+    bool isSmallSheet(uint32_t face) const {
+        return pieces_.isSmallSheet(pieces_.ofPosition(state_.mesh.facePositions(face).x), state_.diagonal);
+    }
     Hierarchy finish(uint32_t levelCount, double firstError);
 
 private:
@@ -168,9 +173,15 @@ Hierarchy Builder::finish(uint32_t levelCount, double firstError) {
     return h;
 }
 
-/// Faces of the uniform states.
-std::vector<uint32_t> countFaces(const Mesh& mesh, const Hierarchy& h) {
-    std::vector<uint32_t> alive(h.levelCount, 0);
+double areaOf(const Hierarchy& h, const glm::uvec3& p) {
+    const glm::dvec3 a(h.positions[p.x]);
+    return glm::length(glm::cross(glm::dvec3(h.positions[p.y]) - a, glm::dvec3(h.positions[p.z]) - a)) / 2;
+}
+
+/// Faces of the uniform states and their area.
+void measureStates(const Mesh& mesh, const Hierarchy& h, const std::function<bool(uint32_t)>& isSheet,
+                   std::vector<HierarchyLevelReport>& levels) {
+    for (HierarchyLevelReport& l : levels) l.faces = 0;
     for (uint32_t f = 0; f < mesh.faceCount(); ++f) {
         glm::uvec3 w = mesh.faces[f];
         for (uint32_t level = 0; level < h.levelCount; ++level) {
@@ -179,10 +190,12 @@ std::vector<uint32_t> countFaces(const Mesh& mesh, const Hierarchy& h) {
             }
             const glm::uvec3 p(h.wedgePosition[w.x], h.wedgePosition[w.y], h.wedgePosition[w.z]);
             if (p.x == p.y || p.y == p.z || p.z == p.x) break;
-            ++alive[level];
+            const double area = areaOf(h, p);
+            ++levels[level].faces;
+            levels[level].area += area;
+            if (isSheet(f)) levels[level].sheetArea += area;
         }
     }
-    return alive;
 }
 
 double secondsSince(std::chrono::steady_clock::time_point start) {
@@ -207,8 +220,8 @@ Hierarchy buildDefaultHierarchy(const Mesh& mesh, const Topology& topology, cons
     }
     Hierarchy h = builder.finish(levelCount, first);
     levels.resize(levelCount);
-    const std::vector<uint32_t> faces = countFaces(mesh, h);
-    for (uint32_t l = 0; l < levelCount; ++l) levels[l].faces = faces[l];
+    measureStates(
+        mesh, h, [&](uint32_t face) { return builder.isSmallSheet(face); }, levels);
     if (report) *report = std::move(levels);
     return h;
 }

@@ -11,8 +11,6 @@ namespace xgc::bake {
 namespace {
 
 constexpr size_t kWidestDomain = 16;
-/// Pieces larger than this share of the diagonal are no cards.
-constexpr double kLargest = 1.0 / 16;
 /// Cards larger than so many errors have no neighbour that they could become one with.
 constexpr double kLargestInErrors = 4;
 /// Cards farther apart than so many errors neither.
@@ -116,8 +114,7 @@ std::vector<uint32_t> CardMerger::release(double squaredError) {
 }
 
 bool CardMerger::mayBecomeCard(uint32_t piece) const {
-    const double largest = kLargest * state_.diagonal;
-    if (!pieces_.isOpen(piece) || pieces_.squaredRadius(piece) > largest * largest) return false;
+    if (!pieces_.isSmallSheet(piece, state_.diagonal)) return false;
     const std::span<const uint32_t> positions = pieces_.positionsOf(piece), faces = pieces_.facesOf(piece);
     const uint32_t patch = assignment_.facePatch[faces.front()];
     return std::all_of(faces.begin(), faces.end(), [&](uint32_t f) { return assignment_.facePatch[f] == patch; }) &&

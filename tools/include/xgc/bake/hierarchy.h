@@ -57,6 +57,8 @@ struct HierarchyLevelReport {
     uint32_t flipRefused = 0;
     uint32_t wedgeRefused = 0;
     double seconds = 0;
+    double area = 0;      ///< of the uniform state, mesh units squared; 0 where the builder does not say
+    double sheetArea = 0; ///< of it, that of small open pieces: leaves, feathers, stickers
 };
 
 /// The drawn surface of a state by definition, slow and simple: the reference for the runtime. Faces of wedges,
