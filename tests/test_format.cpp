@@ -38,15 +38,8 @@ size_t allocations = 0;
 
 namespace {
 
-const test::ToyAsset& plain() {
-    static const test::ToyAsset asset = test::smallAsset(false);
-    return asset;
-}
-
-const test::ToyAsset& withMadeVertices() {
-    static const test::ToyAsset asset = test::smallAsset(true);
-    return asset;
-}
+using test::plain;
+using test::withMadeVertices;
 
 xgc::Status open(test::ExactBytes& bytes) {
     AssetView view;

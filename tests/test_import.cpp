@@ -320,6 +320,9 @@ TEST_CASE("OBJ indices out of range are refused") {
     CHECK(!refusal(kSquare + "f 1 2 5\n", ".obj").empty());
     CHECK(!refusal(kSquare + "f 1 2 -9\n", ".obj").empty());
     CHECK(!refusal("OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 7\n", ".off").empty());
+    // Assimp would take a later line for the face, unchecked.
+    CHECK(names(refusal("OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n0\n3 0 1 900000\n", ".off"), "face 0 has no corners"));
+    CHECK(names(refusal("OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n10 0 1 2 0 1 2 0 1 2 0\n", ".off"), "triangulate"));
     std::string ply = kAsciiPly;
     ply.replace(ply.find("3 4 1 2"), 7, "3 9 1 2");
     CHECK(!refusal(ply, ".ply").empty());

@@ -48,15 +48,8 @@ void checkRoundTrip(std::span<const std::byte> image) {
     CHECK(std::equal(back.begin(), back.end(), image.begin(), image.end()));
 }
 
-const test::ToyAsset& plain() {
-    static const test::ToyAsset asset = test::smallAsset(false);
-    return asset;
-}
-
-const test::ToyAsset& withMadeVertices() {
-    static const test::ToyAsset asset = test::smallAsset(true);
-    return asset;
-}
+using test::plain;
+using test::withMadeVertices;
 
 /// A mesh with every attribute that a file can hold, all different in each row.
 bake::Model decorated(bake::Model model) {

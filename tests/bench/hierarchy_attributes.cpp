@@ -1,5 +1,6 @@
 #include "comparison.h"
 #include "sections.h"
+#include "subjects.h"
 
 #include <fmt/format.h>
 
@@ -34,13 +35,7 @@ int benchAttributes(const Flags& flags) {
     for (const bake::Placement p : {bake::Placement::subset, bake::Placement::optimal}) {
         const char* placement = p == bake::Placement::optimal ? "optimal" : "subset";
         std::vector<Comparison> all;
-        for (const Source& source : sourcesOf(flags)) {
-            if (!flags.wantsModel(source.name)) continue;
-            Subject subject;
-            if (const bake::Status s = load(source, subject); !s.ok()) {
-                fmt::print(stderr, "{}\n", s.message);
-                return int(s.outcome);
-            }
+        const auto compare = [&](const Subject& subject) {
             bake::HierarchyOptions options;
             options.placement = p;
             for (const Comparison& c : compareLevels(flags, subject, options, true)) {
@@ -52,7 +47,8 @@ int benchAttributes(const Flags& flags) {
                                     b.uvRms, b.stretch));
                 all.push_back(c);
             }
-        }
+        };
+        if (const int failed = forSubjects(flags, sourcesOf(flags), compare); failed != 0) return failed;
         const std::string over = fmt::format(", {} placement, over", placement);
         printRatios("normal deviation" + over,
                     ratiosOf(all, [](const Quality& q) { return q.attributes.normalDegrees; }));

@@ -1,5 +1,6 @@
 #include "builder.h"
 #include "sections.h"
+#include "subjects.h"
 
 #include <fmt/format.h>
 
@@ -51,13 +52,7 @@ int benchParts(const Flags& flags) {
     if (flags.data.empty()) return 0;
     Csv csv(flags, "parts", "model,part,part_share,level,rest_share,triangles_over_ideal");
     std::vector<double> all, means;
-    for (const Source& source : princetonSample(flags.data)) {
-        if (!flags.wantsModel(source.name)) continue;
-        Subject subject;
-        if (const bake::Status s = load(source, subject); !s.ok()) {
-            fmt::print(stderr, "{}\n", s.message);
-            return int(s.outcome);
-        }
+    const auto measure = [&](const Subject& subject) {
         const bake::Hierarchy h = build(subject, subject.parts);
         const std::vector<uint32_t> counts = uniformFaces(subject.mesh, h);
         const uint32_t level = levelAt(counts, kRest);
@@ -73,7 +68,8 @@ int benchParts(const Flags& flags) {
                    shares.size(), 100 * rest, mean(ofModel), std::ranges::max(ofModel));
         all.insert(all.end(), ofModel.begin(), ofModel.end());
         means.push_back(mean(ofModel));
-    }
+    };
+    if (const int failed = forSubjects(flags, princetonSample(flags.data), measure); failed != 0) return failed;
     if (all.empty()) return 0;
     fmt::print(
         "triangles over the ideal: {:.3f} in the mean of the models, {:.3f} in the median part, {:.3f} at worst\n",

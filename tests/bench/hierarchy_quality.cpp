@@ -1,5 +1,6 @@
 #include "comparison.h"
 #include "sections.h"
+#include "subjects.h"
 
 #include <fmt/format.h>
 
@@ -33,18 +34,13 @@ int measure(const Flags& flags, bake::Placement placement, Csv& csv) {
     bake::HierarchyOptions options;
     options.placement = placement;
     std::vector<Comparison> all;
-    for (const Source& source : sourcesOf(flags)) {
-        if (!flags.wantsModel(source.name)) continue;
-        Subject subject;
-        if (const bake::Status s = load(source, subject); !s.ok()) {
-            fmt::print(stderr, "{}\n", s.message);
-            return int(s.outcome);
-        }
+    const auto compare = [&](const Subject& subject) {
         const std::vector<Comparison> some = compareLevels(flags, subject, options, false);
         if (flags.each) printEach(some);
         for (const Comparison& c : some) writeRow(c, csv);
         all.insert(all.end(), some.begin(), some.end());
-    }
+    };
+    if (const int failed = forSubjects(flags, sourcesOf(flags), compare); failed != 0) return failed;
     printRatios("RMS over that of", ratiosOf(all, [](const Quality& q) { return q.rms; }));
     printRatios("maximum over that of", ratiosOf(all, [](const Quality& q) { return q.max; }));
     return 0;

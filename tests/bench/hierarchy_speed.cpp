@@ -1,5 +1,6 @@
 #include "builder.h"
 #include "sections.h"
+#include "subjects.h"
 #include "surface.h"
 
 #include <fmt/format.h>
@@ -128,16 +129,7 @@ int benchSpeed(const Flags& flags) {
     if (!flags.data.empty()) sources.push_back({"psb113", flags.data / "psb/off/113.off", 0, true});
     for (Source& s : dragon()) sources.push_back({s.name, s.file, 0, true});
     sources.push_back({"terrain8M", {}, 8'000'000, true});
-    for (const Source& source : sources) {
-        if (!flags.wantsModel(source.name)) continue;
-        Subject subject;
-        if (const bake::Status s = load(source, subject); !s.ok()) {
-            fmt::print(stderr, "{}\n", s.message);
-            return int(s.outcome);
-        }
-        measure(flags, subject, csv);
-    }
-    return 0;
+    return forSubjects(flags, sources, [&](const Subject& subject) { measure(flags, subject, csv); });
 }
 
 } // namespace xgc::bench

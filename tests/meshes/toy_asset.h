@@ -69,4 +69,15 @@ inline ToyAsset smallAsset(bool makeVertices) {
     return toyAsset(model, 3, options);
 }
 
+/// The small asset without made vertices, and with them; made once.
+inline const ToyAsset& plain() {
+    static const ToyAsset asset = smallAsset(false);
+    return asset;
+}
+
+inline const ToyAsset& withMadeVertices() {
+    static const ToyAsset asset = smallAsset(true);
+    return asset;
+}
+
 } // namespace xgc::test

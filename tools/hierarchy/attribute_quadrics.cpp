@@ -39,7 +39,7 @@ void AttributeQuadrics::addFace(const SurfaceState& state, glm::uvec3 wedges) {
     if (!(determinant > 0)) return;
     const double area = std::sqrt(determinant) / 2;
     const glm::dvec3 alongU = (vv * u - uv * v) / determinant, alongV = (uu * v - uv * u) / determinant;
-    Sum sum;
+    Quadric sum;
     sum.weight = area;
     std::array<glm::vec4, 9> gradients;
     for (size_t k = 0; k < count_; ++k) {
@@ -47,27 +47,11 @@ void AttributeQuadrics::addFace(const SurfaceState& state, glm::uvec3 wedges) {
         const glm::dvec3 g =
             alongU * (double(valuesAt(wedges.y)[k]) - a) + alongV * (double(valuesAt(wedges.z)[k]) - a);
         const double constant = a - glm::dot(g, p[0]);
-        sum.xx += area * g.x * g.x;
-        sum.yy += area * g.y * g.y;
-        sum.zz += area * g.z * g.z;
-        sum.xy += area * g.x * g.y;
-        sum.xz += area * g.x * g.z;
-        sum.yz += area * g.y * g.z;
-        sum.b += (area * constant) * g;
-        sum.c += area * constant * constant;
+        sum.addSquare(g, constant, area);
         gradients[k] = glm::vec4(area * glm::dvec4(g, constant));
     }
     for (int corner = 0; corner < 3; ++corner) {
-        Sum& s = sums_[wedges[corner]];
-        s.xx += sum.xx;
-        s.yy += sum.yy;
-        s.zz += sum.zz;
-        s.xy += sum.xy;
-        s.xz += sum.xz;
-        s.yz += sum.yz;
-        s.b += sum.b;
-        s.c += sum.c;
-        s.weight += sum.weight;
+        sums_[wedges[corner]].add(sum);
         for (size_t k = 0; k < count_; ++k) gradients_[wedges[corner] * count_ + k] += gradients[k];
     }
 }
@@ -75,9 +59,8 @@ void AttributeQuadrics::addFace(const SurfaceState& state, glm::uvec3 wedges) {
 /// Sum over faces and attributes of area * (gradient . point + constant - value)^2.
 double AttributeQuadrics::evaluate(uint32_t wedge, const glm::dvec3& p, uint32_t first, uint32_t second,
                                    double share) const {
-    const Sum& s = sums_[wedge];
-    double sum = s.xx * p.x * p.x + s.yy * p.y * p.y + s.zz * p.z * p.z +
-                 2 * (s.xy * p.x * p.y + s.xz * p.x * p.z + s.yz * p.y * p.z) + 2 * glm::dot(s.b, p) + s.c;
+    const Quadric& s = sums_[wedge];
+    double sum = glm::dot(p, s.times(p)) + 2 * glm::dot(s.b, p) + s.c;
     for (size_t k = 0; k < count_; ++k) {
         const double value =
             (1 - share) * double(values_[first * count_ + k]) + share * double(values_[second * count_ + k]);
@@ -97,17 +80,7 @@ double AttributeQuadrics::meetingCost(uint32_t first, uint32_t second, const glm
 
 void AttributeQuadrics::add(uint32_t to, uint32_t from) {
     if (empty()) return;
-    Sum& s = sums_[to];
-    const Sum& other = sums_[from];
-    s.xx += other.xx;
-    s.yy += other.yy;
-    s.zz += other.zz;
-    s.xy += other.xy;
-    s.xz += other.xz;
-    s.yz += other.yz;
-    s.b += other.b;
-    s.c += other.c;
-    s.weight += other.weight;
+    sums_[to].add(sums_[from]);
     for (size_t k = 0; k < count_; ++k) gradients_[to * count_ + k] += gradients_[from * count_ + k];
 }
 

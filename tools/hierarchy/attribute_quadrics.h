@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hierarchy/quadric.h"
 #include "hierarchy/surface_state.h"
 
 #include <xgc/bake/default_hierarchy.h>
@@ -27,19 +28,13 @@ public:
     void grow(size_t wedgeCount);
 
 private:
-    struct Sum {
-        double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
-        glm::dvec3 b{0};
-        double c = 0, weight = 0;
-    };
-
     void addFace(const SurfaceState& state, glm::uvec3 wedges);
     double evaluate(uint32_t wedge, const glm::dvec3& point, uint32_t first, uint32_t second, double share) const;
     float* valuesAt(uint32_t wedge) { return values_.data() + size_t(wedge) * count_; }
 
     size_t count_ = 0; ///< values a wedge
     std::vector<float> values_;
-    std::vector<Sum> sums_;
+    std::vector<Quadric> sums_;        ///< what does not depend on the values
     std::vector<glm::vec4> gradients_; ///< a value each: weighted sum of gradients, and of constants
 };
 

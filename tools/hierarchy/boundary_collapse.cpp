@@ -6,11 +6,7 @@
 
 namespace xgc::bake {
 
-namespace {
-
-constexpr size_t kWidestDomain = 16;
-
-} // namespace
+namespace {} // namespace
 
 BoundaryCollapser::BoundaryCollapser(SurfaceState& state, AttributeQuadrics& attributes,
                                      std::vector<InteriorCollapser>& interiors, Placement placement)
@@ -296,7 +292,7 @@ bool BoundaryCollapser::widen() {
         if (united == domain_) continue;
         if (best == domain_ || state_.domains[united].size() < state_.domains[best].size()) best = united;
     }
-    if (best == domain_ || state_.domains[best].size() > kWidestDomain) return false;
+    if (best == domain_ || state_.domains[best].size() > DomainSets::kWidest) return false;
     domain_ = best;
     return true;
 }

@@ -10,6 +10,9 @@ namespace xgc::bake {
 /// Interned sets of patches. Numbers are given in the order of first use; not for several threads while sets are made.
 class DomainSets {
 public:
+    /// Patches to which steps may widen a domain: wider ones hold too much back.
+    static constexpr size_t kWidest = 16;
+
     explicit DomainSets(std::vector<std::vector<uint32_t>> sets);
 
     /// Rising.

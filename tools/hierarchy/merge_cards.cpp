@@ -10,7 +10,6 @@ namespace xgc::bake {
 
 namespace {
 
-constexpr size_t kWidestDomain = 16;
 /// Cards larger than so many errors have no neighbour that they could become one with.
 constexpr double kLargestInErrors = 4;
 /// Cards farther apart than so many errors neither.
@@ -228,7 +227,7 @@ bool CardMerger::mayMeet(const Member& a, const Member& b, bool acrossPatches) c
     std::vector<uint32_t> both;
     const auto s = state_.domains[a.domain], t = state_.domains[b.domain];
     std::set_union(s.begin(), s.end(), t.begin(), t.end(), std::back_inserter(both));
-    return both.size() <= kWidestDomain;
+    return both.size() <= DomainSets::kWidest;
 }
 
 /// Pairs of cards near each other, each with its nearest few. `crowded`: there are so many that some were left out.
@@ -310,7 +309,7 @@ bool CardMerger::join(Pair pair, const Round& round) {
     limits.area += std::clamp(kPay * owed, -kMostPay * limits.area, kMostPay * limits.area);
     const auto fit = fitCards(a, b, limits);
     if (!fit) return false;
-    if (state_.domains[state_.domains.unite(a.domain, b.domain)].size() > kWidestDomain) return false;
+    if (state_.domains[state_.domains.unite(a.domain, b.domain)].size() > DomainSets::kWidest) return false;
     take(fit->secondSurvives ? b : a, fit->secondSurvives ? a : b, *fit, round.level);
     return true;
 }
@@ -390,7 +389,7 @@ bool CardMerger::standsBeside(Member& card, double squaredError) {
         const SurfaceDistance::Hit hit = others_->nearest(p + state_.origin, squaredError);
         if (hit.squared > squaredError) return false;
         domain = state_.domains.unite(domain, state_.domains.single(otherPatch_[hit.triangle]));
-        if (state_.domains[domain].size() > kWidestDomain) return false;
+        if (state_.domains[domain].size() > DomainSets::kWidest) return false;
     }
     card.domain = domain;
     return true;

@@ -17,16 +17,20 @@ struct Quadric {
 
     /// The plane through `point` with unit normal `n`.
     void addPlane(const glm::dvec3& n, const glm::dvec3& point, double w) {
-        const double d = -glm::dot(n, point);
-        xx += w * n.x * n.x;
-        yy += w * n.y * n.y;
-        zz += w * n.z * n.z;
-        xy += w * n.x * n.y;
-        xz += w * n.x * n.z;
-        yz += w * n.y * n.z;
-        b += (w * d) * n;
-        c += w * d * d;
+        addSquare(n, -glm::dot(n, point), w);
         weight += w;
+    }
+
+    /// w (g.p + d)^2, of no weight of its own.
+    void addSquare(const glm::dvec3& g, double d, double w) {
+        xx += w * g.x * g.x;
+        yy += w * g.y * g.y;
+        zz += w * g.z * g.z;
+        xy += w * g.x * g.y;
+        xz += w * g.x * g.z;
+        yz += w * g.y * g.z;
+        b += (w * d) * g;
+        c += w * d * d;
     }
 
     void add(const Quadric& q) {

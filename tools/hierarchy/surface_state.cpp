@@ -155,7 +155,7 @@ uint32_t SurfaceState::draft(uint32_t room, const glm::dvec3& at, uint32_t v, ui
                              std::span<const std::pair<uint32_t, uint32_t>> wedgePairs) {
     const uint32_t x = rooms[room].position;
     positions[x] = glm::vec3(at + origin);
-    const double share = shareAt(v, w, point(x));
+    const double share = shareAt(v, w, at); // not of the rounded point: g++ 12 at -O3 skips the rounding
     wedgeRanges[x] = {rooms[room].wedge, uint32_t(wedgePairs.size())};
     uint32_t wedge = rooms[room].wedge;
     for (const auto& [a, b] : wedgePairs) {

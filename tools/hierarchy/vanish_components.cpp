@@ -4,12 +4,6 @@
 
 namespace xgc::bake {
 
-namespace {
-
-constexpr size_t kWidestDomain = 16;
-
-} // namespace
-
 ComponentVanisher::ComponentVanisher(const Pieces& pieces, std::span<const uint32_t> facePatch, SurfaceState& state,
                                      double limit, std::function<bool(uint32_t)> stays)
     : pieces_(pieces), facePatch_(facePatch), state_(state), stays_(std::move(stays)) {
@@ -59,7 +53,7 @@ uint32_t ComponentVanisher::carriersOf(uint32_t piece, double price, const Surfa
             return state_.domains.has(carriers, facePatch_[triangle]) && counts(triangle);
         };
         if (surface.nearest(point, price, price, carries).squared <= price) continue;
-        if (state_.domains[carriers].size() >= kWidestDomain) break;
+        if (state_.domains[carriers].size() >= DomainSets::kWidest) break;
         const SurfaceDistance::Hit hit = surface.nearest(point, 0, price, counts);
         carriers = state_.domains.unite(carriers, state_.domains.single(facePatch_[hit.triangle]));
     }
@@ -90,7 +84,7 @@ void ComponentVanisher::vanish(const Piece& piece, uint32_t level) {
     target = alive.front();
     uint32_t domain = piece.carriers;
     for (const uint32_t v : alive) domain = state_.domains.unite(domain, state_.domain[v]);
-    if (state_.domains[domain].size() > kWidestDomain) return;
+    if (state_.domains[domain].size() > DomainSets::kWidest) return;
     state_.domain[target] = domain;
     const uint32_t wedge = state_.wedgesOf(target).front();
     for (const uint32_t v : alive) {

@@ -121,9 +121,17 @@ private:
         std::vector<bool> propertyIsList;
     };
 
-    /// Assimp takes the last vertex for one past the last.
+    /// Assimp takes the last vertex for one past the last, and what comes after the faces for a face where one has none
+    /// or too many corners.
     Status checkOffFace(std::string_view line, uint64_t face, uint64_t vertexCount) const {
-        for (uint64_t left = valueOf(nextToken(line)); left > 0; --left) {
+        constexpr uint64_t kMostCorners = 9; // that it reads
+        const std::string_view corners = nextToken(line);
+        const uint64_t count = valueOf(corners);
+        if (count > kMostCorners)
+            return refuse(
+                fmt::format("face {} has {} corners, and {} can be read; triangulate it", face, corners, kMostCorners));
+        if (count == 0) return truncated(fmt::format("face {} has no corners", face));
+        for (uint64_t left = count; left > 0; --left) {
             const std::string_view index = nextToken(line);
             if (index.empty()) return truncated(fmt::format("face {} is cut off", face));
             if (index[0] < '0' || index[0] > '9' || valueOf(index) >= vertexCount)
