@@ -334,13 +334,13 @@ void CardMerger::take(Member& survivor, Member& other, const CardFit& fit, uint3
     }
     for (uint32_t k = 0; k < survivor.cornerCount; ++k) {
         if (position[k] != survivor.position[k]) {
-            collapse(survivor.position[k], position[k], domain, level);
+            state_.collapseWhole(survivor.position[k], position[k], domain, level);
         } else if (moves) {
             state_.domain[position[k]] = domain;
         }
     }
     for (uint32_t j = 0; j < other.cornerCount; ++j) {
-        if (!isTarget[j]) collapse(other.position[j], last, domain, level);
+        if (!isTarget[j]) state_.collapseWhole(other.position[j], last, domain, level);
     }
     CardFit own = fit;
     own.secondSurvives = false;
@@ -352,19 +352,6 @@ void CardMerger::take(Member& survivor, Member& other, const CardFit& fit, uint3
     debt_[survivor.patch] += survivor.debt();
 }
 
-void CardMerger::collapse(uint32_t from, uint32_t to, uint32_t domain, uint32_t level) {
-    const uint32_t wedge = state_.wedgesOf(to).front();
-    state_.collapseLevel[from] = uint8_t(level);
-    state_.parent[from] = to;
-    state_.domain[from] = domain;
-    for (const uint32_t w : state_.wedgesOf(from)) state_.wedgeParent[w] = wedge;
-    state_.forGroup(from, [&](uint32_t m) {
-        state_.representative[m] = to;
-        for (const uint32_t w : state_.wedgesOf(m)) state_.wedgeRepresentative[w] = wedge;
-    });
-    std::swap(state_.groupNext[from], state_.groupNext[to]);
-}
-
 /// Small cards that found no other: those near surface of another kind (a sticker, a rivet's head).
 uint32_t CardMerger::dropLonely(const Round& round) {
     uint32_t gone = 0;
@@ -372,7 +359,7 @@ uint32_t CardMerger::dropLonely(const Round& round) {
         if (!card.stands || !isSmall(card, round) || !standsBeside(card, round.squaredError / card.scale)) continue;
         state_.domain[card.position[0]] = card.domain;
         for (uint32_t k = 1; k < card.cornerCount; ++k)
-            collapse(card.position[k], card.position[0], card.domain, round.level);
+            state_.collapseWhole(card.position[k], card.position[0], card.domain, round.level);
         debt_[card.patch] -= card.debt();
         card.stands = false;
         ++gone;

@@ -64,7 +64,6 @@ private:
     bool join(Pair pair, const Round& round);
     void forgetRefused(const std::vector<uint8_t>& changed);
     void take(Member& survivor, Member& other, const CardFit& fit, uint32_t level);
-    void collapse(uint32_t from, uint32_t to, uint32_t domain, uint32_t level);
     uint32_t dropLonely(const Round& round);
     bool standsBeside(Member& card, double squaredError);
     void listOthers();

@@ -195,6 +195,19 @@ void SurfaceState::classify(const Topology& topology) {
     }
 }
 
+void SurfaceState::collapseWhole(uint32_t from, uint32_t to, uint32_t stepDomain, uint32_t level) {
+    const uint32_t wedge = wedgesOf(to).front();
+    collapseLevel[from] = uint8_t(level);
+    parent[from] = to;
+    domain[from] = stepDomain;
+    for (const uint32_t w : wedgesOf(from)) wedgeParent[w] = wedge;
+    forGroup(from, [&](uint32_t m) {
+        representative[m] = to;
+        for (const uint32_t w : wedgesOf(m)) wedgeRepresentative[w] = wedge;
+    });
+    std::swap(groupNext[from], groupNext[to]);
+}
+
 void SurfaceState::makeBoundary(uint32_t position) {
     isBoundary[position] = 1;
     guard.joinRim(position);

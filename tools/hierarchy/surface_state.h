@@ -93,6 +93,9 @@ struct SurfaceState {
         return std::span(positionWedges).subspan(wedgeRanges[position].first, wedgeRanges[position].count);
     }
 
+    /// A boundary vertex goes into another in a step that is there whole or not at all: nothing between the two is
+    /// drawn on, so all its wedges go to the other's first.
+    void collapseWhole(uint32_t from, uint32_t to, uint32_t stepDomain, uint32_t level);
     /// Makes a boundary vertex of one inside a patch.
     void makeBoundary(uint32_t position);
     /// The corners of the triangles that the uniform state draws around a representative on the boundary; also, until

@@ -86,19 +86,11 @@ void ComponentVanisher::vanish(const Piece& piece, uint32_t level) {
     for (const uint32_t v : alive) domain = state_.domains.unite(domain, state_.domain[v]);
     if (state_.domains[domain].size() > DomainSets::kWidest) return;
     state_.domain[target] = domain;
-    const uint32_t wedge = state_.wedgesOf(target).front();
     for (const uint32_t v : alive) {
         if (!state_.isBoundary[v]) state_.makeBoundary(v);
-        if (v == target) continue;
-        state_.collapseLevel[v] = uint8_t(level);
-        state_.parent[v] = target;
-        state_.domain[v] = domain;
-        for (const uint32_t w : state_.wedgesOf(v)) state_.wedgeParent[w] = wedge;
-        state_.forGroup(v, [&](uint32_t m) {
-            state_.representative[m] = target;
-            for (const uint32_t w : state_.wedgesOf(m)) state_.wedgeRepresentative[w] = wedge;
-        });
-        std::swap(state_.groupNext[v], state_.groupNext[target]);
+    }
+    for (const uint32_t v : alive) {
+        if (v != target) state_.collapseWhole(v, target, domain, level);
     }
 }
 
