@@ -1,12 +1,12 @@
 #include "meshes/off.h"
 
 #include <xgc/bake/segment.h>
+#include <xgc/bake/segmentation_metrics.h>
 
 #include <fmt/format.h>
 
 #include <chrono>
 #include <cstdio>
-#include <map>
 #include <set>
 
 /// The thesis's segmentation against people's on the Princeton segmentation benchmark: mean Rand index error (Chen,
@@ -17,28 +17,6 @@ namespace {
 
 using namespace xgc;
 using namespace xgc::bake;
-
-uint64_t pairs(uint64_t n) {
-    return n * (n - 1) / 2;
-}
-
-/// Pairs of faces on which two segmentations disagree, over the pairs as the benchmark's own evaluator counts them:
-/// the integer (F - 1) / 2, times F.
-double randIndexError(std::span<const uint32_t> a, std::span<const uint32_t> b) {
-    std::map<uint32_t, uint64_t> inA, inB;
-    std::map<std::pair<uint32_t, uint32_t>, uint64_t> inBoth;
-    for (size_t f = 0; f < a.size(); ++f) {
-        ++inA[a[f]];
-        ++inB[b[f]];
-        ++inBoth[{a[f], b[f]}];
-    }
-    uint64_t together = 0, togetherA = 0, togetherB = 0;
-    for (const auto& [part, n] : inA) togetherA += pairs(n);
-    for (const auto& [part, n] : inB) togetherB += pairs(n);
-    for (const auto& [part, n] : inBoth) together += pairs(n);
-    const auto disagree = double(togetherA + togetherB - 2 * together);
-    return disagree / double((a.size() - 1) / 2 * a.size());
-}
 
 struct Flags {
     bool each = false;   ///< a line a model
@@ -73,17 +51,17 @@ Status readPeople(const std::filesystem::path& psb, uint32_t number, uint32_t fa
 }
 
 /// Mean over the people.
-double errorAgainst(std::span<const uint32_t> labels, std::span<const std::vector<uint32_t>> people) {
+double errorAgainst(const MetricSurface& surface, const MetricLabels& labels, std::span<const MetricLabels> people) {
     double sum = 0;
-    for (const std::vector<uint32_t>& p : people) sum += randIndexError(labels, p);
+    for (const MetricLabels& p : people) sum += compareLabels(surface, labels, p).randIndex;
     return sum / double(people.size());
 }
 
-/// Mean over the pairs of people: what the evaluator itself is checked with.
-double errorAmong(std::span<const std::vector<uint32_t>> people) {
+/// Mean over the pairs of people: what the metrics themselves are checked with.
+double errorAmong(const MetricSurface& surface, std::span<const MetricLabels> people) {
     double sum = 0;
-    for (size_t i = 1; i < people.size(); ++i) sum += errorAgainst(people[i], people.first(i)) * double(i);
-    return sum / double(pairs(people.size()));
+    for (size_t i = 1; i < people.size(); ++i) sum += errorAgainst(surface, people[i], people.first(i)) * double(i);
+    return sum / (double(people.size()) * double(people.size() - 1) / 2);
 }
 
 Status measure(const std::filesystem::path& psb, uint32_t number, const ThesisSegmentOptions& options, Flags flags,
@@ -94,15 +72,19 @@ Status measure(const std::filesystem::path& psb, uint32_t number, const ThesisSe
     if (Status s = weld(model, {}, mesh, weldReport); !s.ok()) return s;
     const auto start = std::chrono::steady_clock::now();
     ThesisSegmentTrace trace;
-    const Segmentation parts = segmentThesis(mesh, buildTopology(mesh), options, &trace);
+    const Topology topology = buildTopology(mesh);
+    const Segmentation parts = segmentThesis(mesh, topology, options, &trace);
     totals.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const std::vector<uint32_t> ours = inputLabels(mesh, parts);
 
     std::vector<std::vector<uint32_t>> people;
     if (Status s = readPeople(psb, number, mesh.inputFaceCount, people); !s.ok()) return s;
-    const double error = errorAgainst(ours, people);
+    const MetricSurface surface = prepareSurface(mesh, topology);
+    std::vector<MetricLabels> prepared;
+    for (const std::vector<uint32_t>& p : people) prepared.push_back(prepareLabels(surface, p));
+    const double error = errorAgainst(surface, prepareLabels(surface, ours), prepared);
     totals.error += error;
-    if (flags.people) totals.peopleError += errorAmong(people);
+    if (flags.people) totals.peopleError += errorAmong(surface, prepared);
     ++totals.models;
     totals.noisy += trace.noisy;
     totals.endless += trace.noisyAfterSmoothing;
