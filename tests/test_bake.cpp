@@ -68,7 +68,7 @@ TEST_CASE("a bake of a closed mesh keeps every promise, whatever gives the parts
         for (uint32_t f = 0; f < faces; ++f) labels << f % 3 << '\n';
     }
     for (const PartSource source :
-         {PartSource::thesis, PartSource::none, PartSource::material, PartSource::component, PartSource::labels}) {
+         {PartSource::perceptual, PartSource::thesis, PartSource::none, PartSource::material, PartSource::component, PartSource::labels}) {
         BakeOptions options = optionsFor(folder, "out.xgc");
         options.parts = source;
         options.labels = folder.path / "in.seg";

@@ -40,7 +40,11 @@ const Variant kVariants[] = {
          o.rounding.normalBits = 10;
          o.compress = true;
      }},
-    {"thesis", [](BakeOptions& o) { o.preset = Preset::thesis; }},
+    {"thesis",
+     [](BakeOptions& o) {
+         o.preset = Preset::thesis;
+         o.parts = PartSource::thesis;
+     }},
 };
 
 /// A folder of its own that goes with the test.

@@ -63,6 +63,12 @@ Status prepareMesh(const BakeOptions& options, Work& work, BakeReport& report) {
 
 Status segment(const BakeOptions& options, Work& work, BakeReport& report) {
     switch (options.parts) {
+    case PartSource::perceptual: {
+        const PerceptualSegmenter segmenter(work.mesh, work.topology);
+        work.parts = segmenter.parts(options.perceptual);
+        report.perceptual = segmenter.trace();
+        break;
+    }
     case PartSource::thesis:
         work.parts = segmentThesis(work.mesh, work.topology, options.segment, &report.segment);
         break;
@@ -149,8 +155,12 @@ std::string provenance(const BakeOptions& options) {
     nlohmann::ordered_json json;
     json["tool"] = "xgc " XGC_VERSION;
     json["preset"] = options.preset == Preset::thesis ? "thesis" : "default";
-    constexpr const char* kSources[] = {"thesis", "none", "material", "component", "file"};
+    constexpr const char* kSources[] = {"perceptual", "thesis", "none", "material", "component", "file"};
     json["parts"] = kSources[int(options.parts)];
+    if (options.parts == PartSource::perceptual) {
+        json["partsCount"] = options.perceptual.partsCount;
+        json["detail"] = fmt::format("{}", options.perceptual.detail);
+    }
     if (options.parts == PartSource::thesis) {
         json["partsCount"] = options.segment.partsCount;
         json["flatTolerance"] = fmt::format("{}", options.segment.flatTolerance);

@@ -1,7 +1,7 @@
+#include "segment/trace_json.h"
+
 #include <xgc/bake/bake.h>
 #include <xgc/bake/error_plot.h>
-
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 
@@ -111,6 +111,7 @@ std::string reportJson(const BakeOptions& options, const BakeReport& report) {
     }
     if (options.preset == Preset::standard) json["floor"] = floorJson(report);
     json["weld"] = weldJson(report.weld);
+    if (options.parts == PartSource::perceptual) json["segment"] = {{"components", traceJson(report.perceptual)}};
     if (options.parts == PartSource::thesis) json["segment"] = segmentJson(report.segment);
     json["verdicts"] = Json::array();
     for (const Verdict& v : report.verdicts) {

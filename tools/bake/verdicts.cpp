@@ -151,7 +151,7 @@ void judgeFoliage(BakeReport& report) {
 /// Pieces that the segmentation leaves apart make patches of their own.
 void judgePartCount(const BakeOptions& options, BakeReport& report) {
     constexpr uint32_t kManyParts = 1000, kFewFaces = 16;
-    if (options.parts != PartSource::thesis || report.parts < kManyParts) return;
+    if (options.parts == PartSource::material || report.parts < kManyParts) return;
     if (report.parts > report.faces / kFewFaces) {
         report.verdicts.push_back(
             {Severity::warning,

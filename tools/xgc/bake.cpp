@@ -21,17 +21,19 @@ std::atomic<bool> interrupted{false};
 
 struct BakeArguments {
     std::string input, output, report, plot;
-    std::string preset = "default", placement = "subset", parts = "thesis", curvature = "trace", normals = "keep",
+    std::string preset = "default", placement = "subset", parts = "perceptual", curvature = "trace", normals = "keep",
                 importanceColor;
     std::vector<std::string> lockedParts, importances;
-    uint32_t jobs = 0;
+    uint32_t partsCount = 0, jobs = 0;
     bool quiet = false, verbose = false;
     bake::BakeOptions options;
 };
 
 bake::Status parseParts(const BakeArguments& arguments, bake::BakeOptions& options) {
     using bake::PartSource;
-    if (arguments.parts == "thesis")
+    if (arguments.parts == "perceptual")
+        options.parts = PartSource::perceptual;
+    else if (arguments.parts == "thesis")
         options.parts = PartSource::thesis;
     else if (arguments.parts == "none")
         options.parts = PartSource::none;
@@ -39,17 +41,14 @@ bake::Status parseParts(const BakeArguments& arguments, bake::BakeOptions& optio
         options.parts = PartSource::material;
     else if (arguments.parts == "component")
         options.parts = PartSource::component;
-    else if (arguments.parts == "perceptual" || arguments.parts == "default") {
-        return bake::usageError(fmt::format("--parts {}: this version does not have it; use thesis, none, material, "
-                                            "component or a .seg file",
-                                            arguments.parts));
-    } else if (std::filesystem::path(arguments.parts).extension() == ".seg") {
+    else if (std::filesystem::path(arguments.parts).extension() == ".seg") {
         options.parts = PartSource::labels;
         options.labels = arguments.parts;
     } else {
-        return bake::usageError(
-            fmt::format("--parts {}: expected thesis, none, material, component or a .seg file", arguments.parts));
+        return bake::usageError(fmt::format(
+            "--parts {}: expected perceptual, thesis, none, material, component or a .seg file", arguments.parts));
     }
+    options.perceptual.partsCount = options.segment.partsCount = arguments.partsCount;
     return {};
 }
 
@@ -206,10 +205,15 @@ void addBake(CLI::App& app, Run& run) {
     bake->add_option("--preset", arguments->preset, "Hierarchy: default, or thesis (boundaries and creases locked)")
         ->check(CLI::IsMember({"default", "thesis"}))
         ->capture_default_str();
-    bake->add_option("--parts", arguments->parts, "Parts: thesis, none, material, component or a FILE.seg")
+    bake->add_option("--parts", arguments->parts, "Parts: perceptual, thesis, none, material, component or a FILE.seg")
         ->capture_default_str();
-    bake->add_option("--parts-count", arguments->options.segment.partsCount,
-                     "Parts wanted of --parts thesis; 0: automatic")
+    CLI::Option* partsCount = bake->add_option("--parts-count", arguments->partsCount,
+                                               "Parts wanted of --parts perceptual and thesis; 0: automatic")
+                                  ->capture_default_str();
+    bake->add_option("--detail", arguments->options.perceptual.detail,
+                     "Of --parts perceptual: so many times as many parts; below 1 unions of them, above 1 inside them")
+        ->check(CLI::Range(0.01, 100.0))
+        ->excludes(partsCount)
         ->capture_default_str();
     bake->add_option("--curvature", arguments->curvature, "Of --preset thesis: norm that locks creases and apices")
         ->check(CLI::IsMember({"trace", "sum", "frobenius"}))

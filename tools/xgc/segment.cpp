@@ -2,6 +2,7 @@
 
 #include <xgc/bake/asset_writer.h>
 #include <xgc/bake/import.h>
+#include <xgc/bake/perceptual.h>
 #include <xgc/bake/picture.h>
 #include <xgc/bake/segment.h>
 
@@ -17,11 +18,13 @@ namespace {
 
 struct SegmentArguments {
     std::string input, output, report, stages;
-    std::string preset = "thesis", parts = "thesis";
+    std::string parts = "perceptual";
     std::vector<float> viewFrom, up;
     std::string size = "1200x900";
     bool noConvexSeeds = false, noMerge = false, quiet = false;
+    uint32_t partsCount = 0;
     bake::ThesisSegmentOptions options;
+    bake::PerceptualOptions perceptual;
     bake::PictureOptions picture;
 };
 
@@ -30,21 +33,17 @@ bool isSegFile(const std::string& parts) {
 }
 
 bake::Status checkSource(const SegmentArguments& arguments) {
-    for (const std::string* name : {&arguments.preset, &arguments.parts}) {
-        if (*name != "perceptual" && *name != "default") continue;
-        return bake::usageError(fmt::format("{}: this version does not have it yet; use thesis", *name));
-    }
-    if (arguments.preset != "thesis") {
-        return bake::usageError(fmt::format("--preset {}: expected thesis", arguments.preset));
-    }
-    constexpr std::array<std::string_view, 4> kSources = {"thesis", "none", "material", "component"};
+    constexpr std::array<std::string_view, 5> kSources = {"perceptual", "thesis", "none", "material", "component"};
     const bool known = std::find(kSources.begin(), kSources.end(), arguments.parts) != kSources.end();
     if (!known && !isSegFile(arguments.parts)) {
-        return bake::usageError(
-            fmt::format("--parts {}: expected thesis, none, material, component or a .seg file", arguments.parts));
+        return bake::usageError(fmt::format(
+            "--parts {}: expected perceptual, thesis, none, material, component or a .seg file", arguments.parts));
     }
-    if (arguments.parts != "thesis" && !(arguments.report.empty() && arguments.stages.empty())) {
-        return bake::usageError("--report and --stages show how --parts thesis came about; leave them out here");
+    if (!arguments.report.empty() && arguments.parts != "thesis" && arguments.parts != "perceptual") {
+        return bake::usageError("--report shows how --parts perceptual or thesis came about; leave it out here");
+    }
+    if (!arguments.stages.empty() && arguments.parts != "thesis") {
+        return bake::usageError("--stages shows how --parts thesis came about; leave it out here");
     }
     return {};
 }
@@ -68,16 +67,27 @@ bake::Status parse(SegmentArguments& arguments) {
     if (bake::Status s = parsePicture(arguments); !s.ok()) return s;
     arguments.options.seedFromConvexEdges = !arguments.noConvexSeeds;
     arguments.options.merge = !arguments.noMerge;
+    arguments.options.partsCount = arguments.perceptual.partsCount = arguments.partsCount;
     if (std::filesystem::path(arguments.output).extension() != ".seg") {
         return bake::usageError(fmt::format("{}: the output must end in .seg", arguments.output));
     }
     return {};
 }
 
+/// How the parts came about, of the preset that found them.
+struct Traces {
+    bake::ThesisSegmentTrace thesis;
+    std::vector<bake::PerceptualTrace> perceptual;
+};
+
 bake::Status findParts(const SegmentArguments& arguments, const bake::Mesh& mesh, const bake::Topology& topology,
-                       bake::ThesisSegmentTrace& trace, bake::Segmentation& parts) {
-    if (arguments.parts == "thesis") {
-        parts = bake::segmentThesis(mesh, topology, arguments.options, &trace);
+                       Traces& traces, bake::Segmentation& parts) {
+    if (arguments.parts == "perceptual") {
+        const bake::PerceptualSegmenter segmenter(mesh, topology);
+        parts = segmenter.parts(arguments.perceptual);
+        traces.perceptual = segmenter.trace();
+    } else if (arguments.parts == "thesis") {
+        parts = bake::segmentThesis(mesh, topology, arguments.options, &traces.thesis);
     } else if (arguments.parts == "none") {
         parts = bake::segmentNone(mesh);
     } else if (arguments.parts == "material") {
@@ -122,27 +132,28 @@ bake::Status runSegment(SegmentArguments& arguments) {
     bake::WeldReport weldReport;
     if (bake::Status s = bake::weld(model, {}, mesh, weldReport); !s.ok()) return s;
     const bake::Topology topology = bake::buildTopology(mesh);
-    bake::ThesisSegmentTrace trace;
+    Traces traces;
     bake::Segmentation parts;
-    if (bake::Status s = findParts(arguments, mesh, topology, trace, parts); !s.ok()) return s;
+    if (bake::Status s = findParts(arguments, mesh, topology, traces, parts); !s.ok()) return s;
     const std::vector<uint32_t> labels = bake::inputLabels(mesh, parts);
     if (bake::Status s = bake::writeSegFile(arguments.output, labels); !s.ok()) return s;
     if (!arguments.report.empty()) {
-        const std::string json = bake::thesisReportJson(arguments.input, mesh, arguments.options, trace, parts);
+        const std::string json =
+            arguments.parts == "thesis"
+                ? bake::thesisReportJson(arguments.input, mesh, arguments.options, traces.thesis, parts)
+                : bake::perceptualReportJson(arguments.input, mesh, arguments.perceptual, traces.perceptual, parts);
         if (bake::Status s = bake::writeFileAtomically(arguments.report, std::as_bytes(std::span(json))); !s.ok())
             return s;
     }
     if (!arguments.stages.empty()) {
-        if (bake::Status s = writeStages(arguments, mesh, topology, trace, parts); !s.ok()) return s;
+        if (bake::Status s = writeStages(arguments, mesh, topology, traces.thesis, parts); !s.ok()) return s;
     }
-    if (!arguments.quiet) printSummary(arguments, trace, mesh.inputFaceCount, parts.partCount());
+    if (!arguments.quiet) printSummary(arguments, traces.thesis, mesh.inputFaceCount, parts.partCount());
     return {};
 }
 
 void addThesisOptions(CLI::App& command, SegmentArguments& arguments) {
     bake::ThesisSegmentOptions& options = arguments.options;
-    command.add_option("--parts-count", options.partsCount, "Parts wanted; 0: automatic (Eq. 3.1 of the thesis)")
-        ->capture_default_str();
     command
         .add_option("--flat-tolerance", options.flatTolerance,
                     "An edge is flat where |D| is at most this times |P1 P2|")
@@ -168,8 +179,19 @@ void addSegment(CLI::App& app, Run& run) {
     CLI::App* command = app.add_subcommand("segment", "Find the parts of a model: a label for each of its faces");
     command->add_option("IN", arguments->input, "Model: glTF, GLB, OBJ, PLY, OFF, STL, ...")->required();
     command->add_option("-o,--output", arguments->output, "Labels to write, ending in .seg: a line a face")->required();
-    command->add_option("--preset", arguments->preset, "How parts are found: thesis")->capture_default_str();
-    command->add_option("--parts", arguments->parts, "Parts: thesis, none, material, component or a FILE.seg")
+    command
+        ->add_option("--parts,--preset", arguments->parts,
+                     "Parts: perceptual, thesis, none, material, component or a FILE.seg")
+        ->capture_default_str();
+    CLI::Option* partsCount = command
+                                  ->add_option("--parts-count", arguments->partsCount,
+                                               "Parts wanted of --parts perceptual and thesis; 0: automatic")
+                                  ->capture_default_str();
+    command
+        ->add_option("--detail", arguments->perceptual.detail,
+                     "Of --parts perceptual: so many times as many parts; below 1 unions of them, above 1 inside them")
+        ->check(CLI::Range(0.01, 100.0))
+        ->excludes(partsCount)
         ->capture_default_str();
     addThesisOptions(*command, *arguments);
     command->add_option("--report", arguments->report, "Write a report as JSON");
@@ -180,7 +202,7 @@ void addSegment(CLI::App& app, Run& run) {
     command->add_option("--up", arguments->up, "Upwards in those pictures: x,y,z")->delimiter(',')->expected(3);
     command->add_option("--size", arguments->size, "Of those pictures, pixels")->capture_default_str();
     command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
-    command->footer("Example: xgc segment teddy.off -o teddy.seg --report teddy.json --stages teddy");
+    command->footer("Example: xgc segment teddy.off -o teddy.seg --report teddy.json");
     command->callback([arguments, &run] { run = [arguments] { return runSegment(*arguments); }; });
 }
 

@@ -6,6 +6,7 @@
 #include <xgc/bake/default_hierarchy.h>
 #include <xgc/bake/floor.h>
 #include <xgc/bake/mesh.h>
+#include <xgc/bake/perceptual.h>
 #include <xgc/bake/segment.h>
 #include <xgc/bake/thesis_hierarchy.h>
 
@@ -15,7 +16,7 @@
 namespace xgc::bake {
 
 /// Where parts come from.
-enum class PartSource { thesis, none, material, component, labels };
+enum class PartSource { perceptual, thesis, none, material, component, labels };
 
 /// How the hierarchy is built.
 enum class Preset {
@@ -38,11 +39,12 @@ enum class NormalSource {
 struct BakeOptions {
     std::filesystem::path input;
     std::filesystem::path output;
-    PartSource parts = PartSource::thesis;
+    PartSource parts = PartSource::perceptual;
     std::filesystem::path labels; ///< the .seg file of PartSource::labels
     WeldOptions weld;
     NormalSource normals = NormalSource::keep;
-    ThesisSegmentOptions segment;
+    PerceptualOptions perceptual; ///< of PartSource::perceptual
+    ThesisSegmentOptions segment; ///< of PartSource::thesis
     Preset preset = Preset::standard;
     ThesisHierarchyOptions thesis; ///< of Preset::thesis
     HierarchyOptions hierarchy;    ///< of Preset::standard; the importances come from the next three
@@ -82,7 +84,8 @@ struct Verdict {
 struct BakeReport {
     std::vector<StageReport> stages;
     WeldReport weld;
-    ThesisSegmentTrace segment; ///< of PartSource::thesis
+    std::vector<PerceptualTrace> perceptual; ///< of PartSource::perceptual
+    ThesisSegmentTrace segment;              ///< of PartSource::thesis
     std::vector<HierarchyLevelReport> levels;
     std::vector<float> levelErrors; ///< largest E of each level, mesh units
     std::vector<float> levelRms;    ///< sampled, both ways, mesh units; empty without BakeOptions::rmsSamples

@@ -1,7 +1,7 @@
 #include "part_order.h"
+#include "trace_json.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cstdlib>
 
@@ -58,6 +58,33 @@ std::string thesisReportJson(const std::string& input, const Mesh& mesh, const T
     json["histogram"] = trace.histogram;
     json["filledRegions"] = trace.filledCount;
     json["equationCount"] = trace.equationCount;
+    json["parts"] = partsJson(mesh, parts);
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+nlohmann::ordered_json traceJson(std::span<const PerceptualTrace> traces) {
+    Json json = Json::array();
+    for (const PerceptualTrace& trace : traces) {
+        json.push_back({{"faces", trace.faces},
+                        {"cells", trace.cells},
+                        {"superfacets", trace.superfacets},
+                        {"noise", asPrinted(trace.noise)},
+                        {"noisy", trace.noisy},
+                        {"naturalCount", trace.naturalCount},
+                        {"lastCosts", Json::array()}});
+        for (const float cost : trace.lastCosts) json.back()["lastCosts"].push_back(asPrinted(cost));
+    }
+    return json;
+}
+
+std::string perceptualReportJson(const std::string& input, const Mesh& mesh, const PerceptualOptions& options,
+                                 std::span<const PerceptualTrace> trace, const Segmentation& parts) {
+    Json json;
+    json["input"] = input;
+    json["preset"] = "perceptual";
+    json["faces"] = mesh.faceCount();
+    json["options"] = {{"partsCount", options.partsCount}, {"detail", asPrinted(options.detail)}};
+    json["components"] = traceJson(trace);
     json["parts"] = partsJson(mesh, parts);
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
