@@ -11,7 +11,7 @@ using Json = nlohmann::json;
 namespace {
 
 const std::vector<std::string> kSubcommands = {
-    "bake",   "segment", "inspect", "verify", "model", "extract",
+    "bake",   "segment", "eval", "inspect", "verify", "model", "extract",
 #ifdef XGC_HAS_VULKAN
     "render",
 #endif

@@ -12,6 +12,7 @@ namespace xgc::tool {
 
 using Run = std::function<bake::Status()>;
 
+void addEval(CLI::App& app, Run& run);
 void addExtract(CLI::App& app, Run& run);
 void addModel(CLI::App& app, Run& run);
 void addBake(CLI::App& app, Run& run);

@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
     xgc::tool::addModel(app, run);
     xgc::tool::addSegment(app, run);
     xgc::tool::addBake(app, run);
+    xgc::tool::addEval(app, run);
     xgc::tool::addInspect(app, run);
     xgc::tool::addVerify(app, run);
     xgc::tool::addExtract(app, run);
