@@ -100,8 +100,8 @@ SurfaceDistance::Hit SurfaceDistance::search(const glm::dvec3& p, double enough,
     return best;
 }
 
-SurfaceDistance::Hit SurfaceDistance::nearest(const glm::dvec3& p, double enough) const {
-    return search(p, enough, std::numeric_limits<double>::infinity(), [](uint32_t) { return true; });
+SurfaceDistance::Hit SurfaceDistance::nearest(const glm::dvec3& p, double enough, double most) const {
+    return search(p, enough, most, [](uint32_t) { return true; });
 }
 
 SurfaceDistance::Hit SurfaceDistance::nearest(const glm::dvec3& p, double enough, double most,

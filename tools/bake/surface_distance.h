@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 namespace xgc::bake {
@@ -46,8 +47,8 @@ public:
         double squared;    ///< distance; infinite where there is no surface
         uint32_t triangle; ///< that lies so near, of those given
     };
-    /// The nearest triangle to `p`, or any at or below the squared distance `enough`.
-    Hit nearest(const glm::dvec3& p, double enough = 0) const;
+    /// The nearest triangle to `p`, or any at or below the squared distance `enough`; infinite beyond `most`.
+    Hit nearest(const glm::dvec3& p, double enough = 0, double most = std::numeric_limits<double>::infinity()) const;
     /// Among the triangles, as given, that `counts` takes; infinite beyond the squared distance `most`.
     Hit nearest(const glm::dvec3& p, double enough, double most, const std::function<bool(uint32_t)>& counts) const;
 

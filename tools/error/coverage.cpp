@@ -130,7 +130,15 @@ Coverage::Disc Coverage::discOf(const DrawnLevel& drawn, const Loop& loop, uint3
     return inner == 1 ? Disc::aroundVertex : Disc::none;
 }
 
+/// Whether the loop passes two triangles beside each other and no drawn vertex: the most frequent disc.
+bool Coverage::isPair(uint32_t face) const {
+    const glm::uvec3 p = input_.mesh.facePositions(face);
+    if (map_[p.x].vertex != kNone || map_[p.y].vertex != kNone || map_[p.z].vertex != kNone) return false;
+    return paths_.isPairOnly(input_.topology.faceEdges[face]);
+}
+
 void Coverage::checkFace(uint32_t face, const DrawnLevel& drawn, RunningErrors& running, Found& found) const {
+    if (isPair(face)) return;
     Loop loop;
     uint32_t centre = kNone;
     Disc disc = Disc::none;

@@ -54,6 +54,7 @@ private:
     bool isWhole(uint32_t face, const DrawnLevel& drawn, const Loop& loop) const;
     Disc discOf(const DrawnLevel& drawn, const Loop& loop, uint32_t& centre) const;
     bool isTrivial(uint32_t face) const;
+    bool isPair(uint32_t face) const;
     struct Found {
         std::vector<uint32_t> loose, strained, centres;
     };

@@ -2,12 +2,18 @@
 
 #include "segments.h"
 
+#include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace xgc::bake {
 namespace {
 
 constexpr double kCloseEnough = 1.1 * 1.1; ///< a bound of this many times what is known to be reached will do
+/// A triangle within so much of what is enough will do as well as the nearest; squared, the rest is for the piece
+/// around.
+constexpr double kNearEnough = 0.5;
+constexpr double kStraight = 1e-12; ///< sines of angles that are rounding
 constexpr uint32_t kMostPieces = 500;
 
 double squaredTo(const Triangle& t, const glm::dvec3& p) {
@@ -70,16 +76,20 @@ void DirectBound::split(const Piece& piece) {
     const int a = longest, b = (longest + 1) % 3;
     const double at = isCrossing ? crossing(piece, a, b) : 0.5;
     const glm::dvec3 middle = piece.corners[a] + (piece.corners[b] - piece.corners[a]) * at;
-    const NearTriangle near = target_.near(middle, piece.near[a].triangle, floor_);
     Piece one = piece, other = piece;
     one.corners[b] = other.corners[a] = middle;
-    one.near[b] = other.near[a] = near;
+    one.near[b] = other.near[a] = target_.near(middle, piece.near[a].triangle, nearEnough_);
+    // Each half keeps the triangle of its old end where that serves.
+    const NearTriangle far{piece.near[b].triangle, squaredTo(target_.triangle(piece.near[b].triangle), middle)};
+    if (far.squared <= std::max(nearEnough_, other.near[a].squared)) other.near[a] = far;
     push(one);
     push(other);
 }
 
 void DirectBound::push(Piece& piece) {
-    for (const NearTriangle& n : piece.near) reached_ = std::max(reached_, n.squared);
+    for (const NearTriangle& n : piece.near) {
+        if (n.squared > nearEnough_) reached_ = std::max(reached_, n.squared);
+    }
     piece.bound = bound(piece, std::max(enough_, reached_ * kCloseEnough));
     pieces_.push_back(piece);
     std::push_heap(pieces_.begin(), pieces_.end(), isTighter);
@@ -88,9 +98,10 @@ void DirectBound::push(Piece& piece) {
 double DirectBound::of(const glm::dvec3 (&corners)[3], const uint32_t (&hints)[3], double enough) {
     Piece whole;
     enough_ = std::max(enough, floor_);
+    nearEnough_ = std::max(enough * kNearEnough, floor_);
     for (int k = 0; k < 3; ++k) {
         whole.corners[k] = corners[k];
-        whole.near[k] = target_.near(corners[k], hints[k], floor_);
+        whole.near[k] = target_.near(corners[k], hints[k], nearEnough_);
     }
     pieces_.clear();
     reached_ = 0;
@@ -105,19 +116,40 @@ double DirectBound::of(const glm::dvec3 (&corners)[3], const uint32_t (&hints)[3
     return pieces_.front().bound;
 }
 
-// Triangles with the first point as a corner hold the hull.
-double DirectBound::ofHull(const std::vector<glm::dvec3>& points, uint32_t hint, double enough) {
+// Jarvis's march: there are few points. Of points on a line, but for rounding, the farthest is the corner.
+void DirectBound::listHull(const std::vector<glm::dvec3>& points, const glm::dvec3& normal) {
+    hull_.clear();
+    const auto isLower = [](const glm::dvec3& a, const glm::dvec3& b) {
+        return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+    };
+    const glm::dvec3 first = *std::min_element(points.begin(), points.end(), isLower);
+    glm::dvec3 at = first;
+    do {
+        hull_.push_back(at);
+        glm::dvec3 next = at;
+        for (const glm::dvec3& p : points) {
+            const glm::dvec3 reach = next - at, way = p - at;
+            const double reach2 = glm::dot(reach, reach), way2 = glm::dot(way, way);
+            const double turn = glm::dot(glm::cross(reach, way), normal);
+            const double straight = kStraight * std::sqrt(reach2 * way2 * glm::dot(normal, normal));
+            if (turn < -straight || (turn <= straight && way2 > reach2)) next = p;
+        }
+        at = next;
+    } while (at != first && hull_.size() < points.size());
+}
+
+double DirectBound::ofHull(const std::vector<glm::dvec3>& points, const glm::dvec3& normal, uint32_t hint,
+                           double enough) {
     const Triangle t = target_.triangle(hint);
     double largest = 0;
     for (const glm::dvec3& p : points) largest = std::max(largest, squaredTo(t, p));
     if (largest <= std::max(enough, floor_)) return largest;
     const uint32_t hints[3] = {hint, hint, hint};
+    listHull(points, normal);
+    if (hull_.size() < 3) return of({hull_.front(), hull_.back(), hull_.back()}, hints, enough);
     largest = 0;
-    if (points.size() < 3) return of({points.front(), points.back(), points.back()}, hints, enough);
-    for (size_t i = 1; i < points.size(); ++i) {
-        for (size_t j = i + 1; j < points.size(); ++j) {
-            largest = std::max(largest, of({points[0], points[i], points[j]}, hints, std::max(largest, enough)));
-        }
+    for (size_t i = 1; i + 1 < hull_.size(); ++i) {
+        largest = std::max(largest, of({hull_[0], hull_[i], hull_[i + 1]}, hints, std::max(largest, enough)));
     }
     return largest;
 }
@@ -144,7 +176,7 @@ NearTriangle InputTarget::near(const glm::dvec3& p, uint32_t hint, double enough
         }
     }
     if (best.squared <= enough || !surface_) return best;
-    const SurfaceDistance::Hit hit = surface_->nearest(p, enough);
+    const SurfaceDistance::Hit hit = surface_->nearest(p, enough, best.squared);
     return hit.squared < best.squared ? NearTriangle{hit.triangle, hit.squared} : best;
 }
 

@@ -26,7 +26,7 @@ public:
     DirectBound(const DirectTarget& target, double floor) : target_(target), floor_(floor) {}
     double of(const glm::dvec3 (&corners)[3], const uint32_t (&hints)[3], double enough);
     /// The same for the convex hull of points of a plane, all of them near the target's triangle `hint`.
-    double ofHull(const std::vector<glm::dvec3>& points, uint32_t hint, double enough);
+    double ofHull(const std::vector<glm::dvec3>& points, const glm::dvec3& normal, uint32_t hint, double enough);
 
 private:
     struct Piece {
@@ -38,14 +38,17 @@ private:
     void push(Piece& piece);
     double bound(const Piece& piece, double enough);
     void split(const Piece& piece);
+    void listHull(const std::vector<glm::dvec3>& points, const glm::dvec3& normal);
     double crossing(const Piece& piece, int from, int to) const;
 
     const DirectTarget& target_;
     const double floor_;
     std::vector<Piece> pieces_; ///< a heap
     double enough_ = 0;
-    double reached_ = 0; ///< the largest distance found
+    double nearEnough_ = 0; ///< triangles within it do as well as the nearest
+    double reached_ = 0;    ///< the largest distance found
     std::vector<uint32_t> candidates_;
+    std::vector<glm::dvec3> hull_; ///< corners, in order
 };
 
 /// The input surface. Where it is prepared, what is not found around the hint is looked for in a tree.

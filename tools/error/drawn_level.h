@@ -24,6 +24,11 @@ struct DrawnLevel {
     std::span<const uint32_t> star(uint32_t vertex) const {
         return {stars.data() + starOffsets[vertex], starOffsets[vertex + 1] - starOffsets[vertex]};
     }
+    /// Of a triangle, as long as twice its area.
+    glm::dvec3 normal(uint32_t triangle) const {
+        const glm::uvec3& t = triangles[triangle];
+        return glm::cross(points[t.y] - points[t.x], points[t.z] - points[t.x]);
+    }
     bool hasCorner(uint32_t triangle, uint32_t vertex) const {
         const glm::uvec3& t = triangles[triangle];
         return t.x == vertex || t.y == vertex || t.z == vertex;

@@ -34,7 +34,7 @@ int sharedEdge(const DrawnLevel& drawn, uint32_t a, uint32_t b) {
 bool PathSearch::circle(const DrawnLevel& drawn, uint32_t centre, uint32_t from, uint32_t to) {
     // Both ways round, one step each in turn: the shorter one arrives first.
     uint32_t at[2] = {from, from}, before[2] = {kNone, kNone};
-    std::vector<uint32_t> ways[2] = {{from}, {from}};
+    for (std::vector<uint32_t>& way : ways_) way.assign(1, from);
     const glm::uvec3& corners = drawn.triangles[from];
     const int c = corners.x == centre ? 0 : corners.y == centre ? 1 : 2;
     uint32_t next[2] = {drawn.beside[from][c], drawn.beside[from][(c + 2) % 3]};
@@ -43,9 +43,9 @@ bool PathSearch::circle(const DrawnLevel& drawn, uint32_t centre, uint32_t from,
             if (next[w] == kNone) continue;
             before[w] = at[w];
             at[w] = next[w];
-            ways[w].push_back(at[w]);
+            ways_[w].push_back(at[w]);
             if (at[w] == to) {
-                path = ways[w];
+                path.swap(ways_[w]);
                 return true;
             }
             const glm::uvec3& t = drawn.triangles[at[w]];
@@ -67,6 +67,24 @@ bool PathSearch::walkFan(const DrawnLevel& drawn, const Segment& s, const Allowa
         if (!allowance.covers(drawn.patches[s.from.triangle], squared)) continue;
         if (!allowance.covers(drawn.patches[s.to.triangle], squared)) continue;
         if (circle(drawn, z, s.from.triangle, s.to.triangle)) return true;
+    }
+    return false;
+}
+
+/// From a drawn vertex over the edge opposite in one of its triangles, where that arrives and costs nothing.
+bool PathSearch::crossOnce(const DrawnLevel& drawn, const Segment& s, const Allowance& allowance) {
+    const bool isForward = s.from.vertex != kNone;
+    const uint32_t vertex = isForward ? s.from.vertex : s.to.vertex;
+    for (const uint32_t t : drawn.star(vertex)) {
+        const glm::uvec3& c = drawn.triangles[t];
+        const int k = c.x == vertex ? 1 : c.y == vertex ? 2 : 0;
+        const uint32_t next = drawn.beside[t][k];
+        if (next == kNone || !reaches(drawn, next, isForward ? s.to : s.from)) continue;
+        const double squared = segmentToSegment(s.a, s.b, drawn.points[c[k]], drawn.points[c[(k + 1) % 3]]).squared;
+        if (!allowance.covers(drawn.patches[t], squared) || !allowance.covers(drawn.patches[next], squared)) continue;
+        path.assign({t, next});
+        if (!isForward) std::swap(path[0], path[1]);
+        return true;
     }
     return false;
 }
@@ -117,13 +135,13 @@ bool PathSearch::searchWide(const DrawnLevel& drawn, const Segment& s, const All
 
 bool PathSearch::find(const DrawnLevel& drawn, const Segment& s, const Allowance& allowance) {
     const bool isPlain = s.from.vertex == kNone && s.to.vertex == kNone;
-    if (isPlain && walkFan(drawn, s, allowance)) return true;
+    if (isPlain ? walkFan(drawn, s, allowance) : crossOnce(drawn, s, allowance)) return true;
     return searchWide(drawn, s, allowance);
 }
 
 EdgePaths::EdgePaths(const MeasuredInput& input, const TrackedMap& map)
-    : input_(input), map_(map), faceLeaves_(input.mesh.faces.size()), edgeLeaves_(input.topology.edges.size(), 0),
-      codes_(edgeLeaves_.size(), kInside), stored_(chunkCount(codes_.size())) {
+    : input_(input), map_(map), patch_(input.topology.edges.size(), kNone), faceLeaves_(input.mesh.faces.size()),
+      edgeLeaves_(patch_.size(), 0), codes_(edgeLeaves_.size(), kInside), stored_(chunkCount(codes_.size())) {
     const auto& collapse = input.hierarchy.collapseLevel;
     for (uint32_t f = 0; f < faceLeaves_.size(); ++f) {
         const glm::uvec3 p = input.mesh.facePositions(f);
@@ -133,9 +151,16 @@ EdgePaths::EdgePaths(const MeasuredInput& input, const TrackedMap& map)
             leaves = std::max(leaves, faceLeaves_[f]);
         }
     }
+    for (uint32_t e = 0; e < patch_.size(); ++e) {
+        const auto faces = input.topology.facesOfEdge(e);
+        const auto patchOf = [&](uint32_t f) { return input.hierarchy.facePatch[f]; };
+        const uint32_t patch = patchOf(faces.front());
+        if (std::all_of(faces.begin(), faces.end(), [&](uint32_t f) { return patchOf(f) == patch; })) patch_[e] = patch;
+    }
 }
 
 double EdgePaths::leastError(uint32_t edge, const RunningErrors& running) const {
+    if (patch_[edge] != kNone) return running.of(patch_[edge]);
     double least = std::numeric_limits<double>::infinity();
     for (const uint32_t f : input_.topology.facesOfEdge(edge)) {
         least = std::min(least, running.of(input_.hierarchy.facePatch[f]));
@@ -174,10 +199,13 @@ bool EdgePaths::raise(uint32_t edge, const DrawnLevel& drawn, std::span<const ui
         chunk.running.raise(drawn.patches[path[i]], crossings[i]);
         chunk.running.raise(drawn.patches[path[i + 1]], crossings[i]);
     }
-    for (const uint32_t f : input_.topology.facesOfEdge(edge)) {
-        chunk.running.raise(input_.hierarchy.facePatch[f], worst);
-    }
+    raisePatches(edge, worst, chunk.running);
     return true;
+}
+
+void EdgePaths::raisePatches(uint32_t edge, double squared, RunningErrors& running) const {
+    if (patch_[edge] != kNone) return running.raise(patch_[edge], squared);
+    for (const uint32_t f : input_.topology.facesOfEdge(edge)) running.raise(input_.hierarchy.facePatch[f], squared);
 }
 
 double EdgePaths::largestError(uint32_t edge, const std::vector<double>& errors) const {
@@ -208,8 +236,9 @@ uint32_t EdgePaths::find(uint32_t edge, const DrawnLevel& drawn, Chunk& chunk) c
             segmentToSegment(segment.a, segment.b, drawn.points[c[k]], drawn.points[c[(k + 1) % 3]]).squared;
         if (allowance.covers(drawn.patches[from.triangle], squared) &&
             allowance.covers(drawn.patches[to.triangle], squared)) {
-            const uint32_t pair[2] = {from.triangle, to.triangle};
-            raise(edge, drawn, pair, chunk);
+            chunk.running.raise(drawn.patches[from.triangle], squared);
+            chunk.running.raise(drawn.patches[to.triangle], squared);
+            raisePatches(edge, squared, chunk.running);
             return kPair;
         }
     }
@@ -229,14 +258,17 @@ uint32_t EdgePaths::find(uint32_t edge, const DrawnLevel& drawn, Chunk& chunk) c
 void EdgePaths::advance(uint32_t level, const DrawnLevel& drawn, const std::vector<uint8_t>& isDrawnComponent,
                         std::vector<double>& errors) {
     level_ = level;
+    const bool isAllDrawn = std::find(isDrawnComponent.begin(), isDrawnComponent.end(), 0) == isDrawnComponent.end();
+    const auto isDrawn = [&](uint32_t edge) {
+        return isAllDrawn || isDrawnComponent[input_.topology.faceComponent[input_.topology.facesOfEdge(edge).front()]];
+    };
     tbb::enumerable_thread_specific<PathSearch> searches;
     forChunks(codes_.size(), errors, [&](RunningErrors& running, uint32_t chunk, uint32_t first, uint32_t last) {
         stored_[chunk].clear();
         Chunk c{running, errors, stored_[chunk], searches.local()};
         for (uint32_t e = first; e < last; ++e) {
             if (edgeLeaves_[e] > level || isKept(e, drawn)) continue;
-            const uint32_t face = input_.topology.facesOfEdge(e).front();
-            codes_[e] = isDrawnComponent[input_.topology.faceComponent[face]] ? find(e, drawn, c) : kNoPath;
+            codes_[e] = isDrawn(e) ? find(e, drawn, c) : kNoPath;
         }
     });
 }

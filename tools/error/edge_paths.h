@@ -28,11 +28,13 @@ private:
         double cost;
         uint32_t node;
     };
+    bool crossOnce(const DrawnLevel& drawn, const Segment& segment, const Allowance& allowance);
     bool walkFan(const DrawnLevel& drawn, const Segment& segment, const Allowance& allowance);
     bool circle(const DrawnLevel& drawn, uint32_t centre, uint32_t from, uint32_t to);
     void open(uint32_t triangle, uint32_t parent, double cost);
     bool searchWide(const DrawnLevel& drawn, const Segment& segment, const Allowance& allowance);
 
+    std::vector<uint32_t> ways_[2];
     std::vector<Node> nodes_;
     std::vector<Open> heap_;
     std::vector<uint64_t> stamps_;
@@ -76,6 +78,12 @@ public:
         }
     }
 
+    /// Whether the three ways together stay in two triangles beside each other.
+    bool isPairOnly(const glm::uvec3& edges) const {
+        const uint32_t a = codes_[edges.x], b = codes_[edges.y], c = codes_[edges.z];
+        return a <= kPair && b <= kPair && c <= kPair && a + b + c == 2 * kPair;
+    }
+
     /// The level at which no face keeps the edge, or face, as it is any more.
     uint32_t edgeLeaves(uint32_t edge) const { return edgeLeaves_[edge]; }
     uint32_t faceLeaves(uint32_t face) const { return faceLeaves_[face]; }
@@ -93,11 +101,13 @@ private:
     bool isKept(uint32_t edge, const DrawnLevel& drawn) const;
     uint32_t find(uint32_t edge, const DrawnLevel& drawn, Chunk& chunk) const;
     bool raise(uint32_t edge, const DrawnLevel& drawn, std::span<const uint32_t> path, const Chunk& chunk) const;
+    void raisePatches(uint32_t edge, double squared, RunningErrors& running) const;
     double largestError(uint32_t edge, const std::vector<double>& errors) const;
     double leastError(uint32_t edge, const RunningErrors& running) const;
 
     const MeasuredInput& input_;
     const TrackedMap& map_;
+    std::vector<uint32_t> patch_; ///< of the edge's faces; kNone: several
     std::vector<uint8_t> faceLeaves_, edgeLeaves_;
     uint32_t level_ = 0;
     std::vector<uint32_t> codes_;

@@ -91,6 +91,7 @@ private:
     void measureStrained(const DrawnLevel& drawn, std::vector<double>& errors) {
         const std::vector<uint32_t>& faces = coverage_.strainedFaces();
         if (faces.empty()) return;
+        inputTarget_.prepare();
         const DrawnTarget surface(drawn);
         const auto measure = [&](RunningErrors& running, uint32_t, uint32_t first, uint32_t last) {
             DirectBound toSurface(surface, input_.floor), toInput(inputTarget_, input_.floor);
@@ -98,7 +99,8 @@ private:
                 measureFace(faces[i], toSurface, running);
                 for (const Coverage::Region& r : coverage_.imageOf(faces[i], drawn)) {
                     const uint32_t patch = drawn.patches[r.triangle];
-                    running.raise(patch, toInput.ofHull(r.points, faces[i], running.of(patch)));
+                    running.raise(patch,
+                                  toInput.ofHull(r.points, drawn.normal(r.triangle), faces[i], running.of(patch)));
                 }
             }
         };

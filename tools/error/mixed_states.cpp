@@ -138,31 +138,41 @@ MixedStates::Rim MixedStates::rimOf(uint32_t level, const DrawnLevel& drawn,
     return rim;
 }
 
-/// The patch, and what the others draw at its boundary.
-void MixedStates::draw(uint32_t patch, const Rim& rim, Scratch& scratch) const {
+void MixedStates::addTriangle(glm::uvec3 t, uint32_t owner, Scratch& scratch) const {
+    DrawnLevel& around = scratch.around;
+    for (int k = 0; k < 3; ++k) {
+        uint32_t& number = scratch.number[t[k]];
+        if (number == kNone) {
+            number = uint32_t(around.positions.size());
+            around.positions.push_back(t[k]);
+            around.points.emplace_back(input_.hierarchy.positions[t[k]]);
+        }
+        t[k] = number;
+    }
+    around.triangles.push_back(t);
+    around.patches.push_back(owner);
+}
+
+void MixedStates::drawPatch(uint32_t patch, const Rim& rim, Scratch& scratch) const {
     DrawnLevel& around = scratch.around;
     for (const uint32_t p : around.positions) scratch.number[p] = kNone;
     around.positions.clear();
     around.points.clear();
     around.triangles.clear();
     around.patches.clear();
-    const auto add = [&](glm::uvec3 t, uint32_t owner) {
-        for (int k = 0; k < 3; ++k) {
-            uint32_t& number = scratch.number[t[k]];
-            if (number == kNone) {
-                number = uint32_t(around.positions.size());
-                around.positions.push_back(t[k]);
-                around.points.emplace_back(input_.hierarchy.positions[t[k]]);
-            }
-            t[k] = number;
-        }
-        around.triangles.push_back(t);
-        around.patches.push_back(owner);
-    };
-    for (const glm::uvec3& face : patches_[patch].faces) {
-        const glm::uvec3 t(standing(face.x, rim), standing(face.y, rim), standing(face.z, rim));
-        if (!isDegenerate(t)) add(t, patch);
+    around.faces.clear();
+    const std::vector<glm::uvec3>& faces = patches_[patch].faces;
+    for (uint32_t f = 0; f < faces.size(); ++f) {
+        const glm::uvec3 t = standing(faces[f], rim);
+        if (isDegenerate(t)) continue;
+        addTriangle(t, patch, scratch);
+        around.faces.push_back(f);
     }
+    listStars(around);
+}
+
+/// What the others draw at the patch's boundary.
+void MixedStates::drawOthers(uint32_t patch, const Rim& rim, Scratch& scratch) const {
     scratch.standing.clear();
     for (const uint32_t b : patches_[patch].boundary) scratch.standing.push_back(number_[rim.representatives[b]]);
     std::sort(scratch.standing.begin(), scratch.standing.end());
@@ -170,23 +180,53 @@ void MixedStates::draw(uint32_t patch, const Rim& rim, Scratch& scratch) const {
     for (const uint32_t r : scratch.standing) {
         for (uint32_t i = rim.starOffsets[r]; i < rim.starOffsets[r + 1]; ++i) {
             const uint32_t t = rim.stars[i];
-            if (rim.patches[t] != patch) add(rim.triangles[t], rim.patches[t]);
+            if (rim.patches[t] != patch) addTriangle(rim.triangles[t], rim.patches[t], scratch);
         }
     }
-    listStars(around);
+    listStars(scratch.around);
 }
 
-/// The largest squared distance of a sample, or `allowed` if all are below it.
+/// Most samples are near a triangle known from before: where all are, nothing needs to be drawn.
+void MixedStates::listFar(const PatchState& patch, const Rim& rim, double allowed, Scratch& scratch) const {
+    scratch.far.clear();
+    for (uint32_t i = 0; i < patch.samples.size(); ++i) {
+        const Sample& sample = patch.samples[i];
+        if (!rim.isDrawnComponent[sample.component]) continue; // as in the uniform state
+        const glm::uvec3 t = standing(sample.corners, rim);
+        const bool isNear = !isDegenerate(t) && squaredDistance(sample.point, input_.point(t.x), input_.point(t.y),
+                                                                input_.point(t.z)) <= allowed;
+        if (!isNear) scratch.far.push_back(i);
+    }
+}
+
+NearTriangle MixedStates::walkFrom(const Sample& sample, const Rim& rim, double allowed, const Scratch& scratch) const {
+    glm::uvec3 seeds = standing(sample.corners, rim);
+    for (int k = 0; k < 3; ++k) seeds[k] = scratch.number[seeds[k]];
+    return walkNear(scratch.around, sample.point, {kNone, std::numeric_limits<double>::infinity()}, seeds,
+                    {nullptr, allowed, input_.floor});
+}
+
+/// Leaves those samples far that the patch's own triangles do not come near.
+void MixedStates::leaveFar(PatchState& patch, const Rim& rim, double allowed, Scratch& scratch) const {
+    size_t kept = 0;
+    for (const uint32_t i : scratch.far) {
+        Sample& sample = patch.samples[i];
+        const NearTriangle near = walkFrom(sample, rim, allowed, scratch);
+        if (near.triangle == kNone || near.squared > allowed)
+            scratch.far[kept++] = i;
+        else if (isDegenerate(standing(sample.corners, rims_.back())))
+            sample.corners = patch.faces[scratch.around.faces[near.triangle]];
+    }
+    scratch.far.resize(kept);
+}
+
+/// The largest squared distance of a far sample, or `allowed` if all are below it.
 double MixedStates::farthest(const PatchState& patch, const Rim& rim, double allowed, const Scratch& scratch) const {
     const DrawnLevel& around = scratch.around;
     double farthest = allowed;
-    for (const Sample& sample : patch.samples) {
-        if (!rim.isDrawnComponent[sample.component]) continue; // as in the uniform state
-        const Allowance allowance{nullptr, farthest, input_.floor};
-        glm::uvec3 seeds;
-        for (int k = 0; k < 3; ++k) seeds[k] = scratch.number[standing(sample.corners[k], rim)];
-        NearTriangle near{kNone, std::numeric_limits<double>::infinity()};
-        near = walkNear(around, sample.point, near, seeds, allowance);
+    for (const uint32_t i : scratch.far) {
+        const Sample& sample = patch.samples[i];
+        NearTriangle near = walkFrom(sample, rim, farthest, scratch);
         for (uint32_t t = 0; t < around.count() && near.squared > farthest; ++t) {
             near.squared = std::min(near.squared, squaredTo(around, t, sample.point));
         }
@@ -195,12 +235,17 @@ double MixedStates::farthest(const PatchState& patch, const Rim& rim, double all
     return farthest;
 }
 
-double MixedStates::measure(uint32_t patch, const Rim& rim, double own, Scratch& scratch) const {
+double MixedStates::measure(uint32_t patch, const Rim& rim, double own, Scratch& scratch) {
     double allowed = std::max(own, input_.floor);
     for (const uint32_t q : patches_[patch].adjacent) {
         if (q != patch) allowed = std::max(allowed, rim.errors[q]);
     }
-    draw(patch, rim, scratch);
+    listFar(patches_[patch], rim, allowed, scratch);
+    if (scratch.far.empty()) return own;
+    drawPatch(patch, rim, scratch);
+    leaveFar(patches_[patch], rim, allowed, scratch);
+    if (scratch.far.empty()) return own;
+    drawOthers(patch, rim, scratch);
     const double found = farthest(patches_[patch], rim, allowed, scratch);
     return found > allowed ? found * kBetweenSamples : own;
 }
@@ -256,7 +301,8 @@ void MixedStates::advance(const DrawnLevel& drawn, const std::vector<uint8_t>& i
         Scratch& scratch = scratch_.local();
         follow(patch, level);
         if (patch.faces.size() * kFewFaces > patch.faceCount) return;
-        for (const Rim& rim : rims_) raised[p] = measure(p, rim, raised[p], scratch);
+        // The coarsest first: the triangles left there are left in the others.
+        for (size_t r = rims_.size(); r-- > 0;) raised[p] = measure(p, rims_[r], raised[p], scratch);
     });
     errors[level] = std::move(raised);
     listGone(level, isDrawnComponent);

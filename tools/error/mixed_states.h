@@ -40,7 +40,7 @@ private:
     };
     struct Sample {
         glm::dvec3 point;
-        glm::uvec3 corners; ///< of its face, as drawn by the patch alone
+        glm::uvec3 corners; ///< of its face or one found near it since, as drawn by the patch alone
         uint32_t component;
     };
     struct Gone {
@@ -59,6 +59,7 @@ private:
     struct Scratch {
         DrawnLevel around;
         std::vector<uint32_t> number;   ///< vertex in `around` of each position; kNone
+        std::vector<uint32_t> far;      ///< samples that are not near what their corners draw
         std::vector<uint32_t> standing; ///< representatives of the patch's boundary, rising
     };
 
@@ -68,13 +69,21 @@ private:
               const std::vector<double>& errors) const;
     uint32_t alone(uint32_t position, uint32_t level) const;
     void follow(PatchState& patch, uint32_t level) const;
-    double measure(uint32_t patch, const Rim& rim, double allowed, Scratch& scratch) const;
+    double measure(uint32_t patch, const Rim& rim, double allowed, Scratch& scratch);
+    void listFar(const PatchState& patch, const Rim& rim, double allowed, Scratch& scratch) const;
     void listGone(uint32_t level, const std::vector<uint8_t>& isDrawnComponent);
     void raiseForGone(uint32_t patch, const DrawnLevel& drawn, std::vector<std::vector<double>>& errors) const;
-    void draw(uint32_t patch, const Rim& rim, Scratch& scratch) const;
+    void addTriangle(glm::uvec3 positions, uint32_t owner, Scratch& scratch) const;
+    void drawPatch(uint32_t patch, const Rim& rim, Scratch& scratch) const;
+    void drawOthers(uint32_t patch, const Rim& rim, Scratch& scratch) const;
+    void leaveFar(PatchState& patch, const Rim& rim, double allowed, Scratch& scratch) const;
     double farthest(const PatchState& patch, const Rim& rim, double allowed, const Scratch& scratch) const;
+    NearTriangle walkFrom(const Sample& sample, const Rim& rim, double allowed, const Scratch& scratch) const;
     uint32_t standing(uint32_t position, const Rim& rim) const {
         return number_[position] == kNone ? position : rim.representatives[number_[position]];
+    }
+    glm::uvec3 standing(const glm::uvec3& corners, const Rim& rim) const {
+        return {standing(corners.x, rim), standing(corners.y, rim), standing(corners.z, rim)};
     }
 
     const MeasuredInput& input_;
