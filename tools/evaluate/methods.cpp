@@ -1,4 +1,5 @@
 #include <xgc/bake/evaluate.h>
+#include <xgc/bake/perceptual.h>
 
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
@@ -13,14 +14,19 @@ namespace xgc::bake {
 
 namespace {
 
+Segmentation perceptual(const Mesh& mesh, const Topology& topology, uint32_t partsCount) {
+    return segmentPerceptual(mesh, topology, {.partsCount = partsCount});
+}
+
 Segmentation thesis(const Mesh& mesh, const Topology& topology, uint32_t partsCount) {
     ThesisSegmentOptions options;
     options.partsCount = partsCount;
     return segmentThesis(mesh, topology, options);
 }
 
-/// All there are: a new one is a row.
+/// All there are, the default first: a new one is a row.
 constexpr std::array kPresets = {
+    SegmentPreset{"perceptual", perceptual},
     SegmentPreset{"thesis", thesis},
 };
 

@@ -46,6 +46,7 @@ struct SegmentPreset {
     std::string_view name;
     Segmentation (*segment)(const Mesh& mesh, const Topology& topology, uint32_t partsCount);
 };
+/// The default first.
 std::span<const SegmentPreset> segmentPresets();
 
 /// A way to get labels for the faces of a model's input; called from several threads. `seconds`: what finding them
