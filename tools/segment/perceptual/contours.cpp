@@ -8,9 +8,9 @@ namespace xgc::bake {
 
 namespace {
 
-constexpr float kBand = 0.014f;       ///< either side of a contour
+constexpr float kBand = 0.0125f;      ///< either side of a contour
 constexpr float kMostOfRegion = 0.5f; ///< that a band may take
-constexpr float kTinyPiece = 0.0075f; ///< of the area of the whole
+constexpr float kTinyPiece = 0.0098f; ///< of the area of the whole
 
 struct RegionPair {
     uint32_t a, b;
@@ -29,8 +29,8 @@ public:
         : graph_(graph), group_(group), regions_(regions), capacity_(graph.links.size()), areas_(regions.count, 0.0f),
           distance_(graph.size(), kFar), node_(graph.size(), 0) {
         for (size_t l = 0; l < capacity_.size(); ++l) {
-            const float concave = features.concave[l] / 0.15f, convex = std::min(features.convex[l], 2.0f);
-            capacity_[l] = graph.links[l].length * (0.08f + (1 + 0.3f * convex) / (1 + concave * concave));
+            const float concave = features.concave[l] / 0.177f, convex = std::min(features.convex[l], 2.0f);
+            capacity_[l] = graph.links[l].length * (0.06f + (1 + 0.4f * convex) / (1 + concave * concave));
         }
         for (uint32_t c = 0; c < graph.size(); ++c) areas_[regions.ofCell[c]] += graph.areas[c];
     }

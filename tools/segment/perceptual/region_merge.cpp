@@ -10,14 +10,51 @@ namespace xgc::bake {
 namespace {
 
 /// A turn of the normal per filter width that counts as fully concave.
-constexpr float kMostConcave = 1.77f;
+constexpr float kMostConcave = 1.26f;
 
-/// What lies between two regions.
+/// What lies between two regions: integrals along their common contour.
 struct Contour {
-    uint32_t to;
-    float length;
-    float concavity; ///< integral of min(k-, 2) along it
+    uint32_t to = 0;
+    float length = 0;
+    float concavity = 0;        ///< of min(k-, 2)
+    glm::vec3 place{0};         ///< of the position
+    glm::vec3 normal{0};        ///< of the surface's normal
+    float placeSquared = 0;     ///< of the position's square
+    float normalAlongPlace = 0; ///< of the normal times the position
+
+    void add(const Contour& other) {
+        length += other.length;
+        concavity += other.concavity;
+        place += other.place;
+        normal += other.normal;
+        placeSquared += other.placeSquared;
+        normalAlongPlace += other.normalAlongPlace;
+    }
+
+    /// How far the surface faces away from the contour's centre along it: 1 around a neck of solid, about 0 around a
+    /// bump on a plain, -1 around the bottom of a cavity, where people see no part.
+    double girth() const {
+        const double l = double(length);
+        const double variance = double(placeSquared) / l - double(glm::dot(place, place)) / (l * l);
+        if (!(variance > 1e-9)) return 0;
+        return (double(normalAlongPlace) - double(glm::dot(normal, place)) / l) / (l * std::sqrt(variance));
+    }
 };
+
+Contour contourAcross(const CellGraph& graph, const CellGraph::Link& link, float concave) {
+    Contour contour;
+    const glm::vec3 place = (graph.centers[link.a] + graph.centers[link.b]) * 0.5f;
+    const glm::vec3 sum = graph.normals[link.a] + graph.normals[link.b];
+    const float length = glm::length(sum);
+    const glm::vec3 normal = length > 0 ? sum / length : glm::vec3(0);
+    contour.length = link.length;
+    contour.concavity = link.length * std::min(concave, kMostConcave);
+    contour.place = place * link.length;
+    contour.normal = normal * link.length;
+    contour.placeSquared = glm::dot(place, place) * link.length;
+    contour.normalAlongPlace = glm::dot(normal, place) * link.length;
+    return contour;
+}
 
 struct Region {
     float area = 0;
@@ -49,9 +86,11 @@ public:
             const CellGraph::Link& link = graph.links[l];
             const uint32_t a = first.ofCell[link.a], b = first.ofCell[link.b];
             if (a == b) continue;
-            const float concavity = link.length * std::min(features.concave[l], kMostConcave);
-            regions_[a].contours.push_back({b, link.length, concavity});
-            regions_[b].contours.push_back({a, link.length, concavity});
+            Contour contour = contourAcross(graph, link, features.concave[l]);
+            contour.to = b;
+            regions_[a].contours.push_back(contour);
+            contour.to = a;
+            regions_[b].contours.push_back(contour);
         }
         for (Region& region : regions_) unite(region.contours);
         copyLines(first, uint32_t(diameters.size()), lines);
@@ -74,8 +113,7 @@ private:
         size_t kept = 0;
         for (size_t i = 0; i < contours.size(); ++i) {
             if (kept > 0 && contours[kept - 1].to == contours[i].to) {
-                contours[kept - 1].length += contours[i].length;
-                contours[kept - 1].concavity += contours[i].concavity;
+                contours[kept - 1].add(contours[i]);
             } else {
                 contours[kept++] = contours[i];
             }
@@ -129,9 +167,16 @@ private:
                                           y.weightedDiameter / std::max(1e-9, double(y.area)));
         const double step = exact::pow(k, 1.2) + 0.32 * exact::pow(std::max(0.0, 1 - visible), 0.3) +
                             0.44 * exact::pow(diameters, 0.72) + 0.1;
-        const double cost =
-            step * exact::pow(smaller / (smaller + 0.0154), 0.32) * exact::pow(length / std::sqrt(smaller), -0.32);
+        const double cost = girthFactor(contour.girth()) * step * exact::pow(smaller / (smaller + 0.03), 0.32) *
+                            exact::pow(length / std::sqrt(smaller), -0.32);
         return smaller < 0.003 ? 0.02 * cost : cost;
+    }
+
+    /// Contours around cavities count little.
+    static double girthFactor(double girth) {
+        constexpr double kNone = 0.1, kMost = 0.7, kGain = 0.05, kLoss = 1;
+        const double beyond = girth - kNone;
+        return 1 + (beyond < 0 ? kLoss : kGain) * std::clamp(beyond, -kMost, kMost);
     }
 
     void merge(uint32_t a, uint32_t b) {
