@@ -9,7 +9,7 @@ namespace xgc::bake {
 namespace {
 
 /// Costs are judged by the dearest of the component to this power: 0 would take them as they are, 1 as shares of it.
-constexpr double kOwnScale = 0.5;
+constexpr double kOwnScale = 0.475;
 
 double highestCost(std::span<const Merge> merges) {
     double highest = 0;
@@ -20,7 +20,7 @@ double highestCost(std::span<const Merge> merges) {
 } // namespace
 
 uint32_t naturalCount(std::span<const Merge> merges, uint32_t islands) {
-    constexpr double kDear = 0.5145; ///< scaled
+    constexpr double kDear = 0.508; ///< scaled
     constexpr double kWhole = 0.5;   ///< a last merge below this: one part
     if (merges.empty() || merges.back().cost < kWhole) return islands;
     const double limit = kDear * exact::pow(highestCost(merges), kOwnScale);

@@ -14,20 +14,43 @@ constexpr uint32_t kEmpty = 0xffffffffu;
 constexpr uint32_t kMostByPlace = 48;
 constexpr uint32_t kMostDepth = kMostByPlace + 16;
 
-/// Halves a range: by the middle of the centres along their longest axis, or by count where that halves nothing.
-size_t splitAt(std::span<uint32_t> triangles, const auto& centerOf, uint32_t depth) {
+/// Parts a range in two where the surface area heuristic is least, of seven planes across the longest axis of the
+/// centres; by count where those part nothing.
+template <class BoxOf>
+size_t splitAt(std::span<uint32_t> triangles, const BoxOf& boxOf, uint32_t depth) {
+    constexpr int kBins = 8;
     if (depth >= kMostByPlace) return triangles.size() / 2;
-    glm::vec3 low(1e30f), high(-1e30f);
-    for (const uint32_t t : triangles) {
-        low = glm::min(low, centerOf(t));
-        high = glm::max(high, centerOf(t));
-    }
-    const glm::vec3 extent = high - low;
+    Box centers;
+    for (const uint32_t t : triangles) centers.add(boxOf(t).center());
+    const glm::vec3 extent = centers.high - centers.low;
     const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-    const float middle = (low[axis] + high[axis]) * 0.5f;
+    if (!(extent[axis] > 0)) return triangles.size() / 2;
+    const float scale = float(kBins) * 0.9999f / extent[axis];
+    const auto binOf = [&](uint32_t t) { return int((boxOf(t).center()[axis] - centers.low[axis]) * scale); };
+    std::array<Box, kBins> boxes;
+    std::array<uint32_t, kBins> counts = {};
+    for (const uint32_t t : triangles) {
+        boxes[size_t(binOf(t))].add(boxOf(t));
+        ++counts[size_t(binOf(t))];
+    }
+    int best = 0;
+    float least = 1e38f;
+    for (int plane = 1; plane < kBins; ++plane) {
+        Box left, right;
+        uint32_t leftCount = 0, rightCount = 0;
+        for (int b = 0; b < kBins; ++b) {
+            (b < plane ? left : right).add(boxes[size_t(b)]);
+            (b < plane ? leftCount : rightCount) += counts[size_t(b)];
+        }
+        if (leftCount == 0 || rightCount == 0) continue;
+        const float cost = left.area() * float(leftCount) + right.area() * float(rightCount);
+        if (cost >= least) continue;
+        least = cost;
+        best = plane;
+    }
     size_t left = 0;
     for (size_t i = 0; i < triangles.size(); ++i) {
-        if (centerOf(triangles[i])[axis] < middle) std::swap(triangles[i], triangles[left++]);
+        if (binOf(triangles[i]) < best) std::swap(triangles[i], triangles[left++]);
     }
     return left == 0 || left == triangles.size() ? triangles.size() / 2 : left;
 }
@@ -45,7 +68,7 @@ RayScene::RayScene(std::span<const glm::vec3> soup) : soup_(soup) {
     boxes_.resize(count);
     for (size_t t = 0; t < count; ++t) {
         const glm::vec3 a = soup[3 * t], b = soup[3 * t + 1], c = soup[3 * t + 2];
-        boxes_[t] = {glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))};
+        for (const glm::vec3& corner : {a, b, c}) boxes_[t].add(corner);
         order[t] = uint32_t(t);
     }
     nodes_.reserve(count / 4 + 1);
@@ -71,30 +94,27 @@ uint32_t RayScene::addPacket(std::span<const uint32_t> triangles) {
 }
 
 uint32_t RayScene::build(std::span<uint32_t> triangles, uint32_t depth) {
-    const auto centerOf = [this](uint32_t t) { return boxes_[t].low + boxes_[t].high; };
+    const auto boxOf = [this](uint32_t t) -> const Box& { return boxes_[t]; };
     const auto index = uint32_t(nodes_.size());
     nodes_.emplace_back();
     std::array<std::span<uint32_t>, 4> parts = {};
-    const size_t half = splitAt(triangles, centerOf, depth);
+    const size_t half = splitAt(triangles, boxOf, depth);
     const std::array<std::span<uint32_t>, 2> halves = {triangles.first(half), triangles.subspan(half)};
     for (size_t h = 0; h < 2; ++h) {
         if (halves[h].size() <= 4) {
             parts[2 * h] = halves[h];
             continue;
         }
-        const size_t quarter = splitAt(halves[h], centerOf, depth);
+        const size_t quarter = splitAt(halves[h], boxOf, depth);
         parts[2 * h] = halves[h].first(quarter);
         parts[2 * h + 1] = halves[h].subspan(quarter);
     }
     for (size_t i = 0; i < 4; ++i) {
-        glm::vec3 low(1e30f), high(-1e30f);
-        for (const uint32_t t : parts[i]) {
-            low = glm::min(low, boxes_[t].low);
-            high = glm::max(high, boxes_[t].high);
-        }
+        Box box;
+        for (const uint32_t t : parts[i]) box.add(boxes_[t]);
         for (int k = 0; k < 3; ++k) {
-            nodes_[index].low[k][i] = low[k];
-            nodes_[index].high[k][i] = high[k];
+            nodes_[index].low[k][i] = box.low[k];
+            nodes_[index].high[k][i] = box.high[k];
         }
         const uint32_t child = parts[i].empty()       ? kEmpty
                                : parts[i].size() <= 4 ? addPacket(parts[i])
@@ -125,24 +145,18 @@ void RayScene::walk(const Ray& ray, const Meet& meet) const {
             continue;
         }
         const Node& node = nodes_[visit.what];
-        float enter[4], leave[4];
-        for (int i = 0; i < 4; ++i) {
-            enter[i] = ray.from;
-            leave[i] = to;
-        }
+        Float4 enter = Float4{} + ray.from, leave = Float4{} + to;
         for (int k = 0; k < 3; ++k) {
-            const float* nearSide = ray.inverse[k] >= 0 ? node.low[k] : node.high[k];
-            const float* farSide = ray.inverse[k] >= 0 ? node.high[k] : node.low[k];
-            for (int i = 0; i < 4; ++i) {
-                const float a = (nearSide[i] - ray.origin[k]) * ray.inverse[k];
-                const float b = (farSide[i] - ray.origin[k]) * ray.inverse[k];
-                enter[i] = a > enter[i] ? a : enter[i];
-                leave[i] = b < leave[i] ? b : leave[i];
-            }
+            const bool isUp = ray.inverse[k] >= 0;
+            const Float4 a = ((isUp ? node.low[k] : node.high[k]) - ray.origin[k]) * ray.inverse[k];
+            const Float4 b = ((isUp ? node.high[k] : node.low[k]) - ray.origin[k]) * ray.inverse[k];
+            enter = a > enter ? a : enter;
+            leave = b < leave ? b : leave;
         }
+        leave *= 1.0000004f; // rounding must not lose a box
         const size_t first = depth;
         for (int i = 0; i < 4; ++i) {
-            if (node.child[i] == kEmpty || enter[i] > leave[i] * 1.0000004f) continue;
+            if (node.child[i] == kEmpty || enter[i] > leave[i]) continue;
             size_t at = depth++; // nearest on top
             for (; at > first && stack[at - 1].at < enter[i]; --at) stack[at] = stack[at - 1];
             stack[at] = {node.child[i], enter[i]};
@@ -151,30 +165,6 @@ void RayScene::walk(const Ray& ray, const Meet& meet) const {
 }
 
 namespace {
-
-/// Nearest of a packet's four hits between from and to, or a value beyond `to`.
-float meetPacket(const auto& packet, const auto& ray, float to) {
-    float at[4];
-    for (int i = 0; i < 4; ++i) {
-        const float e1x = packet.edge1[0][i], e1y = packet.edge1[1][i], e1z = packet.edge1[2][i];
-        const float e2x = packet.edge2[0][i], e2y = packet.edge2[1][i], e2z = packet.edge2[2][i];
-        const float px = ray.direction.y * e2z - ray.direction.z * e2y;
-        const float py = ray.direction.z * e2x - ray.direction.x * e2z;
-        const float pz = ray.direction.x * e2y - ray.direction.y * e2x;
-        const float det = e1x * px + e1y * py + e1z * pz;
-        const float sx = ray.origin.x - packet.corner[0][i];
-        const float sy = ray.origin.y - packet.corner[1][i];
-        const float sz = ray.origin.z - packet.corner[2][i];
-        const float qx = sy * e1z - sz * e1y, qy = sz * e1x - sx * e1z, qz = sx * e1y - sy * e1x;
-        const float inverse = 1.0f / (det != 0 ? det : 1.0f);
-        const float u = (sx * px + sy * py + sz * pz) * inverse;
-        const float v = (ray.direction.x * qx + ray.direction.y * qy + ray.direction.z * qz) * inverse;
-        const float t = (e2x * qx + e2y * qy + e2z * qz) * inverse;
-        const bool hit = int(det != 0) & int(u >= 0) & int(v >= 0) & int(u + v <= 1) & int(t > ray.from) & int(t < to);
-        at[i] = hit ? t : 1e30f;
-    }
-    return std::min(std::min(at[0], at[1]), std::min(at[2], at[3]));
-}
 
 glm::vec3 inverseOf(const glm::vec3& direction) {
     glm::vec3 inverse;
@@ -188,11 +178,31 @@ glm::vec3 inverseOf(const glm::vec3& direction) {
 
 } // namespace
 
+/// Nearest of a packet's four hits between from and to, or a value beyond `to` (Möller and Trumbore 1997).
+float RayScene::meet(const Packet& packet, const Ray& ray, float to) {
+    const auto& [e1x, e1y, e1z] = packet.edge1;
+    const auto& [e2x, e2y, e2z] = packet.edge2;
+    const glm::vec3 d = ray.direction;
+    const Float4 px = d.y * e2z - d.z * e2y, py = d.z * e2x - d.x * e2z, pz = d.x * e2y - d.y * e2x;
+    const Float4 det = e1x * px + e1y * py + e1z * pz;
+    const Float4 sx = ray.origin.x - packet.corner[0];
+    const Float4 sy = ray.origin.y - packet.corner[1];
+    const Float4 sz = ray.origin.z - packet.corner[2];
+    const Float4 qx = sy * e1z - sz * e1y, qy = sz * e1x - sx * e1z, qz = sx * e1y - sy * e1x;
+    const Float4 inverse = 1.0f / (det != 0 ? det : Float4{} + 1.0f);
+    const Float4 u = (sx * px + sy * py + sz * pz) * inverse;
+    const Float4 v = (d.x * qx + d.y * qy + d.z * qz) * inverse;
+    const Float4 t = (e2x * qx + e2y * qy + e2z * qz) * inverse;
+    const auto isHit = (det != 0) & (u >= 0) & (v >= 0) & (u + v <= 1) & (t > ray.from) & (t < to);
+    const Float4 at = isHit ? t : Float4{} + 1e30f;
+    return std::min(std::min(at[0], at[1]), std::min(at[2], at[3]));
+}
+
 float RayScene::nearestHit(const glm::vec3& origin, const glm::vec3& direction, float from) const {
     const Ray ray = {origin, direction, inverseOf(direction), from, 1e29f};
     float nearest = -1;
     walk(ray, [&](uint32_t packet, float to) {
-        const float at = meetPacket(packets_[packet], ray, to);
+        const float at = meet(packets_[packet], ray, to);
         if (at >= to) return to;
         return nearest = at;
     });
@@ -203,10 +213,10 @@ bool RayScene::isBlocked(const glm::vec3& a, const glm::vec3& b, uint32_t& occlu
     const glm::vec3 direction = b - a;
     const Ray ray = {a, direction, inverseOf(direction), 0, 1};
     if (packets_.empty()) return false;
-    if (meetPacket(packets_[occluder], ray, 1) < 1) return true;
+    if (meet(packets_[occluder], ray, 1) < 1) return true;
     bool blocked = false;
     walk(ray, [&](uint32_t packet, float to) {
-        if (meetPacket(packets_[packet], ray, to) >= to) return to;
+        if (meet(packets_[packet], ray, to) >= to) return to;
         occluder = packet;
         blocked = true;
         return -1.0f;

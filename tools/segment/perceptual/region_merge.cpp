@@ -165,16 +165,16 @@ private:
         const double visible = lines_.sampled[at] > 0 ? double(lines_.seen[at] / lines_.sampled[at]) : 1;
         const double diameters = std::abs(x.weightedDiameter / std::max(1e-9, double(x.area)) -
                                           y.weightedDiameter / std::max(1e-9, double(y.area)));
-        const double step = exact::pow(k, 1.2) + 0.32 * exact::pow(std::max(0.0, 1 - visible), 0.3) +
+        const double step = exact::pow(k, 1.2) + 0.32 * exact::pow(std::max(0.0, 1 - visible), 0.336) +
                             0.44 * exact::pow(diameters, 0.72) + 0.1;
-        const double cost = girthFactor(contour.girth()) * step * exact::pow(smaller / (smaller + 0.03), 0.32) *
+        const double cost = girthFactor(contour.girth()) * step * exact::pow(smaller / (smaller + 0.025), 0.32) *
                             exact::pow(length / std::sqrt(smaller), -0.32);
         return smaller < 0.003 ? 0.02 * cost : cost;
     }
 
     /// Contours around cavities count little.
     static double girthFactor(double girth) {
-        constexpr double kNone = 0.1, kMost = 0.7, kGain = 0.05, kLoss = 1;
+        constexpr double kNone = 0.1, kMost = 0.7, kGain = 0.05, kLoss = 1.15;
         const double beyond = girth - kNone;
         return 1 + (beyond < 0 ? kLoss : kGain) * std::clamp(beyond, -kMost, kMost);
     }
