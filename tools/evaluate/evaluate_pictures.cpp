@@ -71,7 +71,7 @@ struct View {
 View bestView(const Mesh& mesh) {
     constexpr std::array<View, 3> kViews = {
         {{{0.45f, 0.3f, 1}, {0, 1, 0}}, {{1, 0.3f, 0.45f}, {0, 1, 0}}, {{0.3f, 1, 0.35f}, {0, 0, 1}}}};
-    constexpr std::array<double, 3> kPreference = {1.4, 1, 1};
+    constexpr std::array<double, 3> kPreference = {1.305, 1, 1};
     size_t best = 0;
     double bestArea = 0;
     for (size_t v = 0; v < kViews.size(); ++v) {
