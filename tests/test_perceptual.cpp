@@ -405,6 +405,19 @@ TEST_CASE("the bundled models fall into sensible parts") {
     }
 }
 
+TEST_CASE("contours of very fine meshes leave every part connected") {
+    for (const BundledModel which : {BundledModel::creature, BundledModel::terrain}) {
+        const Welded w = welded(makeModel(which, 60000)); // more faces than cells
+        const PerceptualSegmenter segmenter(w.mesh, w.topology);
+        REQUIRE(segmenter.trace().front().cells < segmenter.trace().front().faces);
+        for (const float detail : {1.0f, 0.5f, 2.0f}) {
+            const Segmentation parts = segmenter.parts({0, detail});
+            checkLabels(w, parts);
+            CHECK(looseSets(w, parts) == 0);
+        }
+    }
+}
+
 TEST_CASE("as many parts as asked for") {
     const Welded ball = welded(ballWithArms(30, kFourArms)), creature = welded(makeModel(BundledModel::creature, 9000));
     const PerceptualSegmenter ballSegmenter(ball.mesh, ball.topology),

@@ -25,11 +25,13 @@ Component analyseComponent(Piece piece, double share) {
     const Resolution resolution = resolutionFor(share);
     Component component;
     if (piece.triangleCount() < resolution.leastCells) {
-        component.faceGraph = makeCells(piece, resolution.mostCells).graph;
+        component.wasSplit = true;
         piece = splitLongEdges(piece, resolution.leastCells);
     }
     component.cells = makeCells(piece, resolution.mostCells);
     component.face = std::move(piece.face);
+    component.centroid = piece.centroid;
+    component.scale = piece.scale;
     const CellGraph& graph = component.cells.graph;
     component.features = findEdgeFeatures(graph);
     component.superfacets = growSuperfacets(graph, component.features, resolution.superfacets);

@@ -14,9 +14,12 @@ struct Component {
     std::vector<float> diameters; ///< per superfacet
     LinesOfSight lines;           ///< per superfacet
     std::vector<Merge> merges;    ///< of the superfacets
-    CellGraph faceGraph;          ///< of a component whose faces were split: its faces, in order
+    bool wasSplit = false;        ///< its faces, into several triangles
 
-    bool wasSplit() const { return faceGraph.size() > 0; }
+    glm::dvec3 centroid{0}; ///< of the component, mesh units
+    double scale = 1;       ///< from them
+
+    bool wasJoined() const { return cells.graph.size() < face.size(); }
     /// Regions that no merge can join.
     uint32_t islands() const { return superfacets.count() - uint32_t(merges.size()); }
 };

@@ -207,21 +207,4 @@ void smoothContours(const CellGraph& graph, const EdgeFeatures& features, std::s
     makeDense(regions);
 }
 
-void joinLooseSets(const CellGraph& graph, std::span<const uint32_t> group, CellRegions& regions) {
-    CellRegions sets = connectedSets(graph, group, regions);
-    std::vector<float> area(sets.count, 0.0f);
-    std::vector<uint32_t> regionOf(sets.count), largest(regions.count, kNone);
-    for (uint32_t c = 0; c < graph.size(); ++c) {
-        area[sets.ofCell[c]] += graph.areas[c];
-        regionOf[sets.ofCell[c]] = regions.ofCell[c];
-    }
-    for (uint32_t s = 0; s < sets.count; ++s) {
-        uint32_t& best = largest[regionOf[s]];
-        if (best == kNone || area[s] > area[best]) best = s;
-    }
-    joinSets(
-        graph, group, [&](uint32_t s, float) { return largest[regionOf[s]] != s; }, sets);
-    for (uint32_t c = 0; c < graph.size(); ++c) regions.ofCell[c] = regionOf[sets.ofCell[c]];
-}
-
 } // namespace xgc::bake

@@ -17,8 +17,4 @@ struct CellRegions {
 void smoothContours(const CellGraph& graph, const EdgeFeatures& features, std::span<const uint32_t> group,
                     CellRegions& regions);
 
-/// Leaves every region connected: all but the largest of its sets join the neighbour with the longest common boundary,
-/// of the same group.
-void joinLooseSets(const CellGraph& graph, std::span<const uint32_t> group, CellRegions& regions);
-
 } // namespace xgc::bake

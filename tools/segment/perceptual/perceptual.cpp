@@ -2,7 +2,9 @@
 
 #include "../part_order.h"
 #include "component.h"
+#include "contour_polish.h"
 #include "how_many.h"
+#include "loose_faces.h"
 #include "nearest_position.h"
 
 #include <algorithm>
@@ -36,6 +38,7 @@ struct PerceptualSegmenter::State {
     const Topology& topology;
     LinkedFaces linked;
     std::vector<Component> components; ///< those that are not tiny
+    std::vector<uint32_t> analysed;    ///< of linked: these
     std::vector<uint32_t> tiny;        ///< of linked
 
     State(const Mesh& m, const Topology& t) : mesh(m), topology(t), linked(linkFaces(m, t)) { analyse(); }
@@ -74,6 +77,7 @@ void PerceptualSegmenter::State::analyse() {
         if (share >= kTinyShare) {
             Piece piece = extractPiece(mesh, linked, facesOf(c), areas, componentArea[c], scratch);
             components.push_back(analyseComponent(std::move(piece), share));
+            analysed.push_back(c);
         } else {
             tiny.push_back(c);
         }
@@ -155,34 +159,21 @@ RegionsOfAll PerceptualSegmenter::State::refine(const RegionsOfAll& regions, uin
 namespace {
 
 /// Labels the faces of a component: one that was split takes the region that holds most of its area, of those that
-/// `isWanted` (face, cell). Where there are none it stays as it is. `partOf`: per face of the mesh, parts that labels
-/// keep to; or empty.
+/// `isWanted` (face, cell). Where there are none it stays as it is.
 template <class IsWanted>
-void labelFaces(const Component& component, const CellRegions& regions, std::span<const uint32_t> partOf,
-                const IsWanted& isWanted, Labels& labels) {
+void labelFaces(const Component& component, const CellRegions& regions, const IsWanted& isWanted, Labels& labels) {
     const std::vector<uint32_t>& cell = component.cells.ofTriangle;
     std::vector<float> area(regions.count, 0.0f);
-    CellRegions ofFaces = {{}, regions.count + 1}; // the last: none
-    std::vector<uint32_t> faces;
     for (size_t begin = 0, end = 0; begin < cell.size(); begin = end) {
         const uint32_t face = component.face[begin];
-        uint32_t best = regions.count;
+        uint32_t best = kNone;
         for (; end < cell.size() && component.face[end] == face; ++end) {
             const uint32_t r = regions.ofCell[cell[end]];
             area[r] += component.cells.graph.areas[cell[end]];
-            if (isWanted(face, cell[end]) && (best == regions.count || area[r] > area[best])) best = r;
+            if (isWanted(face, cell[end]) && (best == kNone || area[r] > area[best])) best = r;
         }
         for (size_t i = begin; i < end; ++i) area[regions.ofCell[cell[i]]] = 0;
-        faces.push_back(face);
-        ofFaces.ofCell.push_back(best);
-    }
-    std::vector<uint32_t> group;
-    if (!partOf.empty()) {
-        for (const uint32_t f : faces) group.push_back(partOf[f]);
-    }
-    if (component.wasSplit()) joinLooseSets(component.faceGraph, group, ofFaces);
-    for (size_t i = 0; i < faces.size(); ++i) {
-        if (ofFaces.ofCell[i] < regions.count) labels.ofFace[faces[i]] = labels.count + ofFaces.ofCell[i];
+        if (best != kNone) labels.ofFace[face] = labels.count + best;
     }
     labels.count += regions.count;
 }
@@ -195,8 +186,11 @@ bool isAnyCell(uint32_t, uint32_t) {
 
 Labels PerceptualSegmenter::State::label(const RegionsOfAll& regions) const {
     Labels labels = {std::vector<uint32_t>(mesh.faces.size(), kNone), 0};
+    std::vector<uint32_t> scratch(mesh.faces.size(), kNone);
     for (size_t c = 0; c < components.size(); ++c) {
-        labelFaces(components[c], regions[c], {}, isAnyCell, labels);
+        labelFaces(components[c], regions[c], isAnyCell, labels);
+        if (components[c].wasSplit) joinLooseFaces(linked, facesOf(analysed[c]), {}, scratch, labels.ofFace);
+        if (components[c].wasJoined()) polishContours(mesh, linked, components[c], scratch, labels.ofFace);
     }
     placeTiny(labels);
     return labels;
@@ -235,7 +229,7 @@ Labels PerceptualSegmenter::State::split(const Labels& labels, const RegionsOfAl
         const auto isAtHome = [&](uint32_t face, uint32_t cell) {
             return regionHome[finer[c].ofCell[cell]] == labels.ofFace[face];
         };
-        labelFaces(component, finer[c], labels.ofFace, isAtHome, fine);
+        labelFaces(component, finer[c], isAtHome, fine);
     }
     std::vector<uint32_t> rest;
     for (uint32_t f = 0; f < mesh.faceCount(); ++f) {
@@ -256,6 +250,10 @@ Labels PerceptualSegmenter::State::split(const Labels& labels, const RegionsOfAl
         uint32_t& first = home[labels.ofFace[f]];
         if (first == kNone) first = fine.count++;
         fine.ofFace[f] = first;
+    }
+    std::vector<uint32_t> scratch(mesh.faces.size(), kNone);
+    for (uint32_t c = 0; c < linked.componentCount(); ++c) {
+        joinLooseFaces(linked, facesOf(c), labels.ofFace, scratch, fine.ofFace);
     }
     return fine;
 }

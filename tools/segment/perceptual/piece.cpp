@@ -21,6 +21,8 @@ Piece extractPiece(const Mesh& mesh, const LinkedFaces& linked, std::span<const 
         centroid += sum * (faceAreas[f] / (3 * area));
     }
     const double scale = 1 / std::sqrt(area);
+    piece.centroid = centroid;
+    piece.scale = scale;
     std::vector<uint32_t> used;
     for (const uint32_t f : piece.face) {
         glm::uvec3 corners, neighbours;
@@ -230,7 +232,10 @@ Piece splitLongEdges(const Piece& piece, uint32_t leastTriangles) {
         if (longest <= enough) break;
         splitter.splitLongerThan(std::max(enough, longest / 2));
     }
-    return splitter.take();
+    Piece fine = splitter.take();
+    fine.centroid = piece.centroid;
+    fine.scale = piece.scale;
+    return fine;
 }
 
 } // namespace xgc::bake

@@ -10,6 +10,8 @@ struct Piece {
     std::vector<glm::uvec3> triangles;  ///< outwards by their corners' order
     std::vector<glm::uvec3> neighbours; ///< as LinkedFaces, in triangles of the piece
     std::vector<uint32_t> face;         ///< per triangle: of the mesh
+    glm::dvec3 centroid{0};             ///< that was moved to the origin
+    double scale = 1;                   ///< by which it was scaled then
     uint32_t triangleCount() const { return uint32_t(triangles.size()); }
 };
 

@@ -1,0 +1,231 @@
+#include "contour_polish.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace xgc::bake {
+
+namespace {
+
+/// A contour is looked at over so many cell sizes around.
+constexpr float kReach = 2.2f;
+
+class Polisher {
+public:
+    Polisher(const Mesh& mesh, const LinkedFaces& linked, const Component& component, std::vector<uint32_t>& scratch,
+             std::vector<uint32_t>& labels)
+        : mesh_(mesh), linked_(linked), component_(component), graph_(component.cells.graph), scratch_(scratch),
+          labels_(labels), reach_(kReach / std::sqrt(float(component.cells.graph.size()))) {}
+
+    void run() {
+        labelCells();
+        findMixedCells();
+        if (around_.empty()) return;
+        collectBand();
+        std::vector<uint32_t> before(band_.size());
+        for (size_t i = 0; i < band_.size(); ++i) before[i] = labels_[faceOf(band_[i])];
+        std::vector<uint32_t> voted(band_.size());
+        for (size_t i = 0; i < band_.size(); ++i) voted[i] = strongestAt(band_[i]);
+        for (size_t i = 0; i < band_.size(); ++i) labels_[faceOf(band_[i])] = voted[i];
+        constexpr int kRounds = 4;
+        bool isConnected = false;
+        for (int round = 0; round < kRounds && !isConnected; ++round) isConnected = !joinLooseFaces();
+        if (!isConnected) {
+            for (size_t i = 0; i < band_.size(); ++i) labels_[faceOf(band_[i])] = before[i];
+        }
+        for (const uint32_t f : component_.face) scratch_[f] = kNone;
+    }
+
+private:
+    void labelCells() {
+        cellLabel_.resize(graph_.size());
+        for (uint32_t t = 0; t < component_.face.size(); ++t) {
+            cellLabel_[component_.cells.ofTriangle[t]] = labels_[component_.face[t]];
+        }
+    }
+
+    /// For cells with a neighbour of another label: all cells within two steps.
+    void findMixedCells() {
+        aroundOffsets_.assign(1, 0);
+        std::vector<uint32_t> seenBy(graph_.size(), kNone);
+        for (uint32_t c = 0; c < graph_.size(); ++c) {
+            const std::span<const CellGraph::Arc> arcs = graph_.arcsOf(c);
+            const bool isMixed = std::any_of(arcs.begin(), arcs.end(), [&](const CellGraph::Arc& arc) {
+                return cellLabel_[arc.to] != cellLabel_[c];
+            });
+            if (isMixed) {
+                const size_t begin = around_.size();
+                around_.push_back(c);
+                seenBy[c] = c;
+                size_t end = begin + 1;
+                for (size_t i = begin; i < end; ++i) {
+                    for (const CellGraph::Arc& arc : graph_.arcsOf(around_[i])) {
+                        if (seenBy[arc.to] == c) continue;
+                        seenBy[arc.to] = c;
+                        around_.push_back(arc.to);
+                    }
+                    if (i == begin) end = around_.size(); // the neighbours' neighbours are the last
+                }
+            }
+            aroundOffsets_.push_back(uint32_t(around_.size()));
+        }
+    }
+
+    uint32_t faceOf(uint32_t triangle) const { return component_.face[triangle]; }
+    uint32_t cellOf(uint32_t triangle) const { return component_.cells.ofTriangle[triangle]; }
+    bool isMixed(uint32_t cell) const { return aroundOffsets_[cell] != aroundOffsets_[cell + 1]; }
+
+    /// Triangles of mixed cells; `scratch_` says from now on which triangle a face is.
+    void collectBand() {
+        for (uint32_t t = 0; t < component_.face.size(); ++t) {
+            scratch_[faceOf(t)] = t;
+            if (isMixed(cellOf(t))) band_.push_back(t);
+        }
+    }
+
+    /// The label whose cells lie nearest, by area and less across a crease.
+    uint32_t strongestAt(uint32_t triangle) {
+        const uint32_t face = faceOf(triangle), cell = cellOf(triangle);
+        const glm::uvec3 c = linked_.corners[face];
+        const glm::vec3 p = mesh_.positions[c.x], q = mesh_.positions[c.y], r = mesh_.positions[c.z];
+        const glm::vec3 center((glm::dvec3(p + q + r) / 3.0 - component_.centroid) * component_.scale);
+        const glm::vec3 crossed = glm::cross(q - p, r - p);
+        const float length = glm::length(crossed);
+        votes_.clear();
+        for (uint32_t i = aroundOffsets_[cell]; i < aroundOffsets_[cell + 1]; ++i) {
+            const uint32_t other = around_[i];
+            const glm::vec3 step = graph_.centers[other] - center;
+            const float near = 1 - glm::dot(step, step) / (reach_ * reach_);
+            if (near <= 0) continue;
+            const float alike = length > 0 ? std::max(0.05f, glm::dot(crossed, graph_.normals[other]) / length) : 1;
+            const float vote = graph_.areas[other] * near * near * alike * alike;
+            const auto at =
+                std::find_if(votes_.begin(), votes_.end(), [&](const Vote& v) { return v.label == cellLabel_[other]; });
+            if (at != votes_.end()) {
+                at->strength += vote;
+            } else {
+                votes_.push_back({cellLabel_[other], vote});
+            }
+        }
+        Vote best = {labels_[face], 0};
+        for (const Vote& v : votes_) {
+            if (v.strength > best.strength || (v.strength == best.strength && v.label < best.label)) best = v;
+        }
+        return best.label;
+    }
+
+    /// Nodes of connectivity: a whole cell where it is of one label all around, else each triangle (numbered after the
+    /// cells).
+    uint32_t nodeOf(uint32_t triangle) const {
+        const uint32_t cell = cellOf(triangle);
+        return isMixed(cell) ? graph_.size() + triangle : cell;
+    }
+    uint32_t find(uint32_t node) {
+        while (set_[node] != node) {
+            set_[node] = set_[set_[node]];
+            node = set_[node];
+        }
+        return node;
+    }
+    void join(uint32_t a, uint32_t b) {
+        a = find(a);
+        b = find(b);
+        set_[std::max(a, b)] = std::min(a, b);
+    }
+
+    void findSets() {
+        set_.resize(graph_.size() + component_.face.size());
+        std::iota(set_.begin(), set_.end(), 0u);
+        for (const CellGraph::Link& link : graph_.links) {
+            const bool areWhole = !isMixed(link.a) && !isMixed(link.b);
+            if (areWhole && cellLabel_[link.a] == cellLabel_[link.b]) join(link.a, link.b);
+        }
+        for (const uint32_t t : band_) {
+            for (int k = 0; k < 3; ++k) {
+                const uint32_t g = linked_.neighbours[faceOf(t)][k];
+                if (g != kNone && labels_[g] == labels_[faceOf(t)]) join(nodeOf(t), nodeOf(scratch_[g]));
+            }
+        }
+    }
+
+    /// Sets of triangles that lie apart from the largest of their label, by area, take the label that borders them
+    /// most. False where there were none.
+    bool joinLooseFaces() {
+        findSets();
+        std::vector<float> area(set_.size(), 0.0f);
+        std::vector<std::pair<uint32_t, uint32_t>> sets; // label, set
+        for (uint32_t c = 0; c < graph_.size(); ++c) {
+            if (isMixed(c)) continue;
+            area[find(c)] += graph_.areas[c];
+            if (find(c) == c) sets.emplace_back(cellLabel_[c], c);
+        }
+        for (const uint32_t t : band_) { // a share of the cell's area each: good enough to tell which set is largest
+            const uint32_t node = nodeOf(t);
+            area[find(node)] += 1e-9f;
+            if (find(node) == node) sets.emplace_back(labels_[faceOf(t)], node);
+        }
+        std::sort(sets.begin(), sets.end(), [&](const auto& a, const auto& b) {
+            if (a.first != b.first) return a.first < b.first;
+            return area[a.second] != area[b.second] ? area[a.second] > area[b.second] : a.second < b.second;
+        });
+        std::vector<uint32_t> loose;
+        for (size_t i = 1; i < sets.size(); ++i) {
+            if (sets[i].first == sets[i - 1].first) loose.push_back(sets[i].second);
+        }
+        std::sort(loose.begin(), loose.end());
+        for (const uint32_t set : loose) giveAway(set);
+        return !loose.empty();
+    }
+
+    void giveAway(uint32_t set) {
+        std::vector<uint32_t> members, around;
+        for (const uint32_t t : band_) {
+            if (find(nodeOf(t)) == set) members.push_back(faceOf(t));
+        }
+        for (const uint32_t f : members) {
+            for (int k = 0; k < 3; ++k) {
+                const uint32_t g = linked_.neighbours[f][k];
+                if (g != kNone && labels_[g] != labels_[f]) around.push_back(labels_[g]);
+            }
+        }
+        std::sort(around.begin(), around.end());
+        size_t most = 0;
+        uint32_t best = kNone;
+        for (size_t i = 0, j = 0; i < around.size(); i = j) {
+            while (j < around.size() && around[j] == around[i]) ++j;
+            if (j - i <= most) continue;
+            most = j - i;
+            best = around[i];
+        }
+        if (best == kNone) return;
+        for (const uint32_t f : members) labels_[f] = best;
+    }
+
+    struct Vote {
+        uint32_t label;
+        float strength;
+    };
+
+    const Mesh& mesh_;
+    const LinkedFaces& linked_;
+    const Component& component_;
+    const CellGraph& graph_;
+    std::vector<uint32_t>& scratch_;
+    std::vector<uint32_t>& labels_;
+    float reach_; ///< in the component's scale
+    std::vector<uint32_t> cellLabel_;
+    std::vector<uint32_t> aroundOffsets_, around_; ///< per cell; none where one label is all around
+    std::vector<uint32_t> band_;                   ///< triangles, rising
+    std::vector<uint32_t> set_;                    ///< per node: another one of its set, or itself
+    std::vector<Vote> votes_;
+};
+
+} // namespace
+
+void polishContours(const Mesh& mesh, const LinkedFaces& linked, const Component& component,
+                    std::vector<uint32_t>& scratch, std::vector<uint32_t>& labelOfFace) {
+    Polisher(mesh, linked, component, scratch, labelOfFace).run();
+}
+
+} // namespace xgc::bake
