@@ -69,6 +69,29 @@ TEST_CASE("presets and parts that do not exist are refused by name") {
     CHECK(folder.names() == std::vector<std::string>{"cube.obj"});
 }
 
+TEST_CASE("numbers of parts are refused where the parts are given") {
+    const Folder folder("counts");
+    const std::string in = folder.file("cube.obj"), out = folder.file("cube.xgc"), seg = folder.file("cube.seg");
+    writeText(in, cubeObj(2));
+    const std::vector<std::vector<std::string>> kWrong = {{"--parts", "none", "--parts-count", "3"},
+                                                          {"--parts", "thesis", "--detail", "2"},
+                                                          {"--detail", "2", "--parts-count", "3"},
+                                                          {"--detail", "0"},
+                                                          {"--detail", "nan"}};
+    for (const std::vector<std::string>& wrong : kWrong) {
+        for (const std::vector<std::string>& command :
+             {std::vector<std::string>{"bake", in, "-o", out}, std::vector<std::string>{"segment", in, "-o", seg}}) {
+            std::vector<std::string> arguments = command;
+            arguments.insert(arguments.end(), wrong.begin(), wrong.end());
+            const RunResult run = runXgc(arguments);
+            INFO(arguments.front() << " " << wrong.front() << " " << wrong[1]);
+            CHECK(run.exitCode == 2);
+            CHECK(run.err.find(wrong[wrong.size() - 2]) != std::string::npos);
+        }
+    }
+    CHECK(folder.names() == std::vector<std::string>{"cube.obj"});
+}
+
 TEST_CASE("JSON has the documented keys, and work without a terminal draws no progress") {
     const Folder folder("json");
     const std::string in = folder.file("cube.obj"), out = folder.file("cube.xgc"), report = folder.file("cube.json");

@@ -1,4 +1,5 @@
 #include "commands.h"
+#include "part_options.h"
 #include "progress.h"
 
 #include <xgc/bake/bake.h>
@@ -21,34 +22,20 @@ std::atomic<bool> interrupted{false};
 
 struct BakeArguments {
     std::string input, output, report, plot;
-    std::string preset = "default", placement = "subset", parts = "perceptual", curvature = "trace", normals = "keep",
-                importanceColor;
+    std::string preset = "default", placement = "subset", curvature = "trace", normals = "keep", importanceColor;
     std::vector<std::string> lockedParts, importances;
-    uint32_t partsCount = 0, jobs = 0;
+    PartOptions parts;
+    uint32_t jobs = 0;
     bool quiet = false, verbose = false;
     bake::BakeOptions options;
 };
 
-bake::Status parseParts(const BakeArguments& arguments, bake::BakeOptions& options) {
-    using bake::PartSource;
-    if (arguments.parts == "perceptual")
-        options.parts = PartSource::perceptual;
-    else if (arguments.parts == "thesis")
-        options.parts = PartSource::thesis;
-    else if (arguments.parts == "none")
-        options.parts = PartSource::none;
-    else if (arguments.parts == "material")
-        options.parts = PartSource::material;
-    else if (arguments.parts == "component")
-        options.parts = PartSource::component;
-    else if (std::filesystem::path(arguments.parts).extension() == ".seg") {
-        options.parts = PartSource::labels;
-        options.labels = arguments.parts;
-    } else {
-        return bake::usageError(fmt::format(
-            "--parts {}: expected perceptual, thesis, none, material, component or a .seg file", arguments.parts));
-    }
-    options.perceptual.partsCount = options.segment.partsCount = arguments.partsCount;
+bake::Status parseParts(BakeArguments& arguments, bake::BakeOptions& options) {
+    if (bake::Status s = parse(arguments.parts); !s.ok()) return s;
+    options.parts = arguments.parts.source;
+    if (options.parts == bake::PartSource::labels) options.labels = arguments.parts.parts;
+    options.perceptual.partsCount = options.segment.partsCount = arguments.parts.count;
+    options.perceptual.detail = arguments.parts.detail;
     return {};
 }
 
@@ -72,7 +59,7 @@ bake::Status parseImportance(const BakeArguments& arguments, bake::BakeOptions& 
     return {};
 }
 
-bake::Status parse(const BakeArguments& arguments, bake::BakeOptions& options) {
+bake::Status parse(BakeArguments& arguments, bake::BakeOptions& options) {
     if (bake::Status s = parseParts(arguments, options); !s.ok()) return s;
     if (bake::Status s = parseImportance(arguments, options); !s.ok()) return s;
     options.preset = arguments.preset == "thesis" ? bake::Preset::thesis : bake::Preset::standard;
@@ -205,16 +192,7 @@ void addBake(CLI::App& app, Run& run) {
     bake->add_option("--preset", arguments->preset, "Hierarchy: default, or thesis (boundaries and creases locked)")
         ->check(CLI::IsMember({"default", "thesis"}))
         ->capture_default_str();
-    bake->add_option("--parts", arguments->parts, "Parts: perceptual, thesis, none, material, component or a FILE.seg")
-        ->capture_default_str();
-    CLI::Option* partsCount = bake->add_option("--parts-count", arguments->partsCount,
-                                               "Parts wanted of --parts perceptual and thesis; 0: automatic")
-                                  ->capture_default_str();
-    bake->add_option("--detail", arguments->options.perceptual.detail,
-                     "Of --parts perceptual: so many times as many parts; below 1 unions of them, above 1 inside them")
-        ->check(CLI::Range(0.01, 100.0))
-        ->excludes(partsCount)
-        ->capture_default_str();
+    addPartOptions(*bake, arguments->parts);
     bake->add_option("--curvature", arguments->curvature, "Of --preset thesis: norm that locks creases and apices")
         ->check(CLI::IsMember({"trace", "sum", "frobenius"}))
         ->capture_default_str();

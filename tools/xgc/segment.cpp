@@ -1,8 +1,8 @@
 #include "commands.h"
+#include "part_options.h"
 
 #include <xgc/bake/asset_writer.h>
 #include <xgc/bake/import.h>
-#include <xgc/bake/perceptual.h>
 #include <xgc/bake/picture.h>
 #include <xgc/bake/segment.h>
 
@@ -18,31 +18,22 @@ namespace {
 
 struct SegmentArguments {
     std::string input, output, report, stages;
-    std::string parts = "perceptual";
+    PartOptions parts;
     std::vector<float> viewFrom, up;
     std::string size = "1200x900";
     bool noConvexSeeds = false, noMerge = false, quiet = false;
-    uint32_t partsCount = 0;
     bake::ThesisSegmentOptions options;
     bake::PerceptualOptions perceptual;
     bake::PictureOptions picture;
 };
 
-bool isSegFile(const std::string& parts) {
-    return std::filesystem::path(parts).extension() == ".seg";
-}
-
-bake::Status checkSource(const SegmentArguments& arguments) {
-    constexpr std::array<std::string_view, 5> kSources = {"perceptual", "thesis", "none", "material", "component"};
-    const bool known = std::find(kSources.begin(), kSources.end(), arguments.parts) != kSources.end();
-    if (!known && !isSegFile(arguments.parts)) {
-        return bake::usageError(fmt::format(
-            "--parts {}: expected perceptual, thesis, none, material, component or a .seg file", arguments.parts));
-    }
-    if (!arguments.report.empty() && arguments.parts != "thesis" && arguments.parts != "perceptual") {
+bake::Status checkReports(const SegmentArguments& arguments) {
+    const bake::PartSource source = arguments.parts.source;
+    const bool isThesis = source == bake::PartSource::thesis, isPerceptual = source == bake::PartSource::perceptual;
+    if (!arguments.report.empty() && !isThesis && !isPerceptual) {
         return bake::usageError("--report shows how --parts perceptual or thesis came about; leave it out here");
     }
-    if (!arguments.stages.empty() && arguments.parts != "thesis") {
+    if (!arguments.stages.empty() && !isThesis) {
         return bake::usageError("--stages shows how --parts thesis came about; leave it out here");
     }
     return {};
@@ -63,11 +54,13 @@ bake::Status parsePicture(SegmentArguments& arguments) {
 }
 
 bake::Status parse(SegmentArguments& arguments) {
-    if (bake::Status s = checkSource(arguments); !s.ok()) return s;
+    if (bake::Status s = parse(arguments.parts); !s.ok()) return s;
+    if (bake::Status s = checkReports(arguments); !s.ok()) return s;
     if (bake::Status s = parsePicture(arguments); !s.ok()) return s;
     arguments.options.seedFromConvexEdges = !arguments.noConvexSeeds;
     arguments.options.merge = !arguments.noMerge;
-    arguments.options.partsCount = arguments.perceptual.partsCount = arguments.partsCount;
+    arguments.options.partsCount = arguments.perceptual.partsCount = arguments.parts.count;
+    arguments.perceptual.detail = arguments.parts.detail;
     if (std::filesystem::path(arguments.output).extension() != ".seg") {
         return bake::usageError(fmt::format("{}: the output must end in .seg", arguments.output));
     }
@@ -82,22 +75,32 @@ struct Traces {
 
 bake::Status findParts(const SegmentArguments& arguments, const bake::Mesh& mesh, const bake::Topology& topology,
                        Traces& traces, bake::Segmentation& parts) {
-    if (arguments.parts == "perceptual") {
+    switch (arguments.parts.source) {
+    case bake::PartSource::perceptual: {
         const bake::PerceptualSegmenter segmenter(mesh, topology);
         parts = segmenter.parts(arguments.perceptual);
         traces.perceptual = segmenter.trace();
-    } else if (arguments.parts == "thesis") {
+        break;
+    }
+    case bake::PartSource::thesis:
         parts = bake::segmentThesis(mesh, topology, arguments.options, &traces.thesis);
-    } else if (arguments.parts == "none") {
+        break;
+    case bake::PartSource::none:
         parts = bake::segmentNone(mesh);
-    } else if (arguments.parts == "material") {
+        break;
+    case bake::PartSource::material:
         parts = bake::segmentByMaterial(mesh);
-    } else if (arguments.parts == "component") {
+        break;
+    case bake::PartSource::component:
         parts = bake::segmentByComponent(mesh, topology);
-    } else {
+        break;
+    case bake::PartSource::labels: {
         std::vector<uint32_t> labels;
-        if (bake::Status s = bake::readSegFile(arguments.parts, mesh.inputFaceCount, labels); !s.ok()) return s;
+        const std::string& file = arguments.parts.parts;
+        if (bake::Status s = bake::readSegFile(file, mesh.inputFaceCount, labels); !s.ok()) return s;
         parts = bake::segmentByLabels(mesh, labels);
+        break;
+    }
     }
     return {};
 }
@@ -119,7 +122,7 @@ bake::Status writeStages(const SegmentArguments& arguments, const bake::Mesh& me
 void printSummary(const SegmentArguments& arguments, const bake::ThesisSegmentTrace& trace, uint32_t faces,
                   uint32_t parts) {
     fmt::print(stderr, "{}: {} faces, {} {}\n", arguments.output, faces, parts, parts == 1 ? "part" : "parts");
-    if (arguments.parts != "thesis" || !trace.noisy) return;
+    if (arguments.parts.source != bake::PartSource::thesis || !trace.noisy) return;
     fmt::print(stderr, "note: the mesh is noisy: smoothed {} times to find its parts{}\n", trace.smoothingRounds,
                trace.noisyAfterSmoothing ? ", and noisy still" : "");
 }
@@ -139,7 +142,7 @@ bake::Status runSegment(SegmentArguments& arguments) {
     if (bake::Status s = bake::writeSegFile(arguments.output, labels); !s.ok()) return s;
     if (!arguments.report.empty()) {
         const std::string json =
-            arguments.parts == "thesis"
+            arguments.parts.source == bake::PartSource::thesis
                 ? bake::thesisReportJson(arguments.input, mesh, arguments.options, traces.thesis, parts)
                 : bake::perceptualReportJson(arguments.input, mesh, arguments.perceptual, traces.perceptual, parts);
         if (bake::Status s = bake::writeFileAtomically(arguments.report, std::as_bytes(std::span(json))); !s.ok())
@@ -179,20 +182,7 @@ void addSegment(CLI::App& app, Run& run) {
     CLI::App* command = app.add_subcommand("segment", "Find the parts of a model: a label for each of its faces");
     command->add_option("IN", arguments->input, "Model: glTF, GLB, OBJ, PLY, OFF, STL, ...")->required();
     command->add_option("-o,--output", arguments->output, "Labels to write, ending in .seg: a line a face")->required();
-    command
-        ->add_option("--parts,--preset", arguments->parts,
-                     "Parts: perceptual, thesis, none, material, component or a FILE.seg")
-        ->capture_default_str();
-    CLI::Option* partsCount = command
-                                  ->add_option("--parts-count", arguments->partsCount,
-                                               "Parts wanted of --parts perceptual and thesis; 0: automatic")
-                                  ->capture_default_str();
-    command
-        ->add_option("--detail", arguments->perceptual.detail,
-                     "Of --parts perceptual: so many times as many parts; below 1 unions of them, above 1 inside them")
-        ->check(CLI::Range(0.01, 100.0))
-        ->excludes(partsCount)
-        ->capture_default_str();
+    addPartOptions(*command, arguments->parts);
     addThesisOptions(*command, *arguments);
     command->add_option("--report", arguments->report, "Write a report as JSON");
     command->add_option("--stages", arguments->stages, "Folder for pictures of the edges, the regions and the parts");
