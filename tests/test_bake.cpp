@@ -67,8 +67,8 @@ TEST_CASE("a bake of a closed mesh keeps every promise, whatever gives the parts
         std::ofstream labels(folder.path / "in.seg");
         for (uint32_t f = 0; f < faces; ++f) labels << f % 3 << '\n';
     }
-    for (const PartSource source :
-         {PartSource::perceptual, PartSource::thesis, PartSource::none, PartSource::material, PartSource::component, PartSource::labels}) {
+    for (const PartSource source : {PartSource::perceptual, PartSource::thesis, PartSource::none, PartSource::material,
+                                    PartSource::component, PartSource::labels}) {
         BakeOptions options = optionsFor(folder, "out.xgc");
         options.parts = source;
         options.labels = folder.path / "in.seg";
