@@ -87,6 +87,11 @@ TEST_CASE("a bake of a closed mesh keeps every promise, whatever gives the parts
         REQUIRE(importModel(options.input, model).ok());
         const auto provenance = nlohmann::json::parse(asset.provenance);
         CHECK(provenance["input"] == "in.off");
+        CHECK(asset.partShapes.size() == asset.parts.size());
+        CHECK(asset.contours.size() == asset.partNeighbours.size());
+        // Labels by turns make many neighbours, which all join; two spheres stay apart.
+        if (source == PartSource::labels) CHECK(asset.merges.size() == 2);
+        if (source == PartSource::component) CHECK(asset.merges.empty());
         CHECK(provenance["inputHash"].get<std::string>().size() == 16);
         VerifyReport verified;
         verifySource(asset, test::welded(model), verified);

@@ -323,6 +323,40 @@ TEST_CASE("tables: each rule is enforced") {
     expectCorrupt("name past", record<PartRecord>(SectionId::parts, 0, [](auto& p) { p.name.offset = 0xfffffff0; }));
     expectCorrupt("does not hold", record<PartRecord>(SectionId::parts, 0, [](auto& p) { p.patchCount = 2; }));
     expectCorrupt("neighbours", record<uint32_t>(SectionId::partNeighbours, 0, [](auto& n) { n = 3; }));
+    expectCorrupt("contour", record<float>(SectionId::contours, 1, [](auto& c) { c = kNaN; }));
+    expectCorrupt("contour", record<float>(SectionId::contours, 0, [](auto& c) { c = -1; }));
+    const auto shape = [](auto change) { return record<PartShape>(SectionId::partShapes, 1, change); };
+    expectCorrupt("box that is not finite", shape([](auto& s) { s.boxCenter[2] = kNaN; }));
+    expectCorrupt("box that is not finite", shape([](auto& s) { s.boxAxes[2][1] = kNaN; }));
+    expectCorrupt("box that is not finite", shape([](auto& s) { s.boxHalfSizes[0] = kNaN; }));
+    expectCorrupt("negative size", shape([](auto& s) { s.boxHalfSizes[1] = -1; }));
+    expectCorrupt("salience", shape([](auto& s) { s.salience = 1.5f; }));
+    expectCorrupt("salience", shape([](auto& s) { s.salience = kNaN; }));
+    // The merges are {1, 2} and {0, 1}.
+    REQUIRE(plain().asset.merges.size() == 2);
+    expectCorrupt("names a merge", shape([](auto& s) { s.joinedBy = 0; }));
+    expectCorrupt("names a merge", shape([](auto& s) { s.joinedBy = 2; }));
+    expectCorrupt("joins in another", shape([](auto& s) { s.joinedBy = kNone; }));
+    const auto merge = [](size_t i, auto change) { return record<MergeRecord>(SectionId::mergeTree, i, change); };
+    expectCorrupt("merge with parts out of order", merge(0, [](auto& m) { m.a = 2; }));
+    expectCorrupt("names a merge", merge(1, [](auto& m) { m.b = 3; }));
+    expectCorrupt("wrong cost", merge(1, [](auto& m) { m.cost = kNaN; }));
+    expectCorrupt("wrong cost", merge(0, [](auto& m) { m.cost = -0.5f; }));
+    expectCorrupt("has joined another", [&](std::span<std::byte> bytes) { // 1 joins 0, and then 2 joins 1
+        merge(0, [](auto& m) { m.a = 0, m.b = 1; })(bytes);
+        merge(1, [](auto& m) { m.a = 1, m.b = 2; })(bytes);
+        record<PartShape>(SectionId::partShapes, 1, [](auto& s) { s.joinedBy = 0; })(bytes);
+        record<PartShape>(SectionId::partShapes, 2, [](auto& s) { s.joinedBy = 1; })(bytes);
+    });
+    const auto section = [](SectionId id, auto change) {
+        return [=](std::span<std::byte> b) {
+            const size_t at = sectionAt(b, id);
+            auto s = test::load<SectionRecord>(b, at);
+            change(s);
+            test::store(b, at, s);
+        };
+    };
+    expectCorrupt("without partShapes", section(SectionId::partShapes, [](auto& s) { s.id = SectionId(1000); }));
     expectCorrupt("material with", record<MaterialRecord>(SectionId::materials, 0, [](auto& m) { m.metallic = kNaN; }));
     expectCorrupt("before its parent", record<NodeRecord>(SectionId::nodes, 1, [](auto& n) { n.parent = 1; }));
     const auto page = [](auto change) { return record<PageRecord>(SectionId::pages, 0, change); };

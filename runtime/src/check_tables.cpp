@@ -225,6 +225,48 @@ Status checkParts(const AssetView& v) {
     return {};
 }
 
+Status checkPartShapes(const AssetView& v) {
+    if (!v.partShapes.empty() && v.partShapes.size() != v.parts.size())
+        return corrupt("section partShapes has another count than the parts");
+    for (uint32_t i = 0; i < v.partShapes.size(); ++i) {
+        const PartShape& shape = v.partShapes[i];
+        const bool axes = std::all_of(std::begin(shape.boxAxes), std::end(shape.boxAxes),
+                                      [](const float(&axis)[3]) { return finite(axis); });
+        if (!axes || !finite(shape.boxCenter) || !finite(shape.boxHalfSizes))
+            return corrupt("part with a box that is not finite", i);
+        if (std::any_of(std::begin(shape.boxHalfSizes), std::end(shape.boxHalfSizes), [](float s) { return s < 0; }))
+            return corrupt("part with a box of a negative size", i);
+        if (!(shape.salience >= 0 && shape.salience <= 1)) return corrupt("part with a salience outside 0..1", i);
+        if (shape.joinedBy == kNone) continue;
+        if (shape.joinedBy >= v.merges.size() || v.merges[shape.joinedBy].b != i)
+            return corrupt("part that names a merge of another", i);
+    }
+    return {};
+}
+
+/// A part joins once at most, as it names the merge, and a lower one that stands for itself until then.
+Status checkMerges(const AssetView& v) {
+    if (!v.merges.empty() && v.partShapes.empty()) return corrupt("section mergeTree without partShapes");
+    for (uint32_t i = 0; i < v.merges.size(); ++i) {
+        const MergeRecord& merge = v.merges[i];
+        if (merge.a >= merge.b || merge.b >= v.record->partCount)
+            return corrupt("merge with parts out of order or range", i);
+        if (v.partShapes[merge.b].joinedBy != i) return corrupt("merge of a part that joins in another", i);
+        if (v.partShapes[merge.a].joinedBy <= i) return corrupt("merge into a part that has joined another", i);
+        if (!std::isfinite(merge.cost) || !(merge.cost >= 0)) return corrupt("merge with a wrong cost", i);
+    }
+    return {};
+}
+
+Status checkContours(const AssetView& v) {
+    if (!v.contours.empty() && v.contours.size() != v.partNeighbours.size())
+        return corrupt("section contours has another count than partNeighbours");
+    for (size_t i = 0; i < v.contours.size(); ++i) {
+        if (!std::isfinite(v.contours[i]) || !(v.contours[i] >= 0)) return corrupt("contour of a wrong length", i);
+    }
+    return {};
+}
+
 Status checkMaterials(const AssetView& v) {
     for (uint32_t i = 0; i < v.materials.size(); ++i) {
         const MaterialRecord& m = v.materials[i];
@@ -263,8 +305,9 @@ Status checkPageTable(const AssetView& v) {
 } // namespace
 
 Status checkTables(const AssetView& view) {
-    for (Status (*check)(const AssetView&) : {checkCounts, checkLevels, checkDomains, checkRanges, checkPatches,
-                                              checkErrors, checkParts, checkMaterials, checkNodes, checkPageTable}) {
+    for (Status (*check)(const AssetView&) :
+         {checkCounts, checkLevels, checkDomains, checkRanges, checkPatches, checkErrors, checkParts, checkPartShapes,
+          checkMerges, checkContours, checkMaterials, checkNodes, checkPageTable}) {
         if (Status s = check(view); !s.ok()) return s;
     }
     return {};

@@ -129,6 +129,9 @@ Status readSections(AssetView& view) {
     view.strings = reader.text(SectionId::strings);
     view.pages = reader.array<PageRecord>(SectionId::pages);
     view.streams = reader.array<StreamRecord>(SectionId::streams);
+    view.contours = reader.array<float>(SectionId::contours);
+    view.partShapes = reader.array<PartShape>(SectionId::partShapes);
+    view.merges = reader.array<MergeRecord>(SectionId::mergeTree);
     view.provenance = reader.text(SectionId::provenance);
     if (!reader.status().ok()) return reader.status();
     if (record.size() != 1) return corrupt("the file has no asset record", uint64_t(SectionId::asset));

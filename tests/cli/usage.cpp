@@ -114,6 +114,18 @@ TEST_CASE("JSON has the documented keys, and work without a terminal draws no pr
     CHECK(inspect["faces"] == 432);
     checkKeys(inspect["levels"][0], {"faces", "error"});
     checkKeys(inspect["bytes"], {"file", "memory", "base"});
+    REQUIRE(inspect["partList"].size() == inspect["parts"]);
+    for (const Json& part : inspect["partList"]) {
+        checkKeys(part, {"id", "name", "stableId", "faces", "area", "centroid", "neighbours", "box", "salience"});
+        checkKeys(part["box"], {"center", "axes", "halfSizes"});
+        CHECK(part["box"]["axes"].size() == 3);
+        CHECK(part["box"]["axes"][2].size() == 3);
+    }
+    CHECK(inspect["merges"].is_array());
+    const RunResult listed = runXgc({"inspect", out, "--parts"});
+    CHECK(listed.exitCode == 0);
+    for (const char* word : {"area", "centroid", "box at", "salience", "part-0"})
+        CHECK(listed.out.find(word) != std::string::npos);
 
     const Json verify = Json::parse(runXgc({"verify", out, "--source", in, "--states", "10", "--json"}).out);
     checkKeys(verify,

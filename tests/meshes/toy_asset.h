@@ -36,6 +36,8 @@ ToyAsset assetOf(const bake::Model& model, uint32_t patches, const Build& build)
     bake::Status s = bake::weld(model, {}, a.mesh, report);
     if (s.ok()) {
         a.parts = slabs(a.mesh, patches);
+        // The last joins the one before, and so on.
+        for (uint32_t i = patches; i-- > 1;) a.parts.merges.push_back({i - 1, i, 0.25f * float(patches - i)});
         a.hierarchy = build(a.mesh, a.parts);
         s = bake::checkHierarchy(a.mesh, a.hierarchy);
     }

@@ -132,6 +132,8 @@ const char* sectionName(SectionId id) {
         return "locks";
     case SectionId::provenance:
         return "provenance";
+    case SectionId::partShapes:
+        return "partShapes";
     case SectionId::patchTiers:
         return "patchTiers";
     }

@@ -66,6 +66,7 @@ Status segment(const BakeOptions& options, Work& work, BakeReport& report) {
     case PartSource::perceptual: {
         const PerceptualSegmenter segmenter(work.mesh, work.topology);
         work.parts = segmenter.parts(options.perceptual);
+        work.parts.merges = segmenter.merges(work.parts);
         report.perceptual = segmenter.trace();
         break;
     }
@@ -88,6 +89,8 @@ Status segment(const BakeOptions& options, Work& work, BakeReport& report) {
         break;
     }
     }
+    if (options.parts != PartSource::perceptual && work.parts.partCount() > 1)
+        work.parts.merges = PerceptualSegmenter(work.mesh, work.topology).merges(work.parts);
     report.parts = work.parts.partCount();
     report.partNames = work.parts.partNames;
     return {};

@@ -67,6 +67,10 @@ Status checkPatches(const Mesh& mesh, const Segmentation& parts, const Hierarchy
         return refuse("the hierarchy has a number of levels outside 1..254:", h.levelCount);
     if (parts.facePart.size() != mesh.faces.size())
         return refuse("parts label another number of faces:", parts.facePart.size());
+    for (size_t m = 0; m < parts.merges.size(); ++m) {
+        if (parts.merges[m].a >= parts.merges[m].b || parts.merges[m].b >= parts.partCount())
+            return refuse("parts out of order or range, merge", m);
+    }
     for (size_t p = 0; p < h.patches.size(); ++p) {
         const Patch& patch = h.patches[p];
         if (patch.part >= parts.partCount() || patch.material >= mesh.materials.size())
@@ -261,6 +265,7 @@ void addParts(Layout& l) {
     const std::vector<PartFigures> figures = measureParts(l.mesh, l.parts);
     std::vector<PartRecord> records(l.parts.partCount());
     std::vector<uint32_t> neighbours;
+    std::vector<float> contours;
     uint32_t patch = 0;
     for (uint32_t i = 0; i < records.size(); ++i) {
         PartRecord& r = records[i];
@@ -277,9 +282,15 @@ void addParts(Layout& l) {
         r.area = float(figures[i].area);
         for (int k = 0; k < 3; ++k) r.centroid[k] = float(figures[i].centroid[k]);
         neighbours.insert(neighbours.end(), figures[i].neighbours.begin(), figures[i].neighbours.end());
+        contours.insert(contours.end(), figures[i].contours.begin(), figures[i].contours.end());
     }
+    std::vector<MergeRecord> merges;
+    for (const PartMerge& m : l.parts.merges) merges.push_back({m.a, m.b, m.cost, 0});
     l.file.section<PartRecord>(SectionId::parts, records);
     l.file.section<uint32_t>(SectionId::partNeighbours, neighbours);
+    l.file.section<float>(SectionId::contours, contours);
+    l.file.section<PartShape>(SectionId::partShapes, shapesOfParts(l.mesh, l.parts, figures));
+    l.file.section<MergeRecord>(SectionId::mergeTree, merges);
 }
 
 void addMaterials(Layout& l) {

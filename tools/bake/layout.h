@@ -89,8 +89,13 @@ struct PartFigures {
     double area = 0;
     glm::dvec3 centroid{0};
     std::vector<uint32_t> neighbours; ///< parts that share an edge, rising
+    std::vector<float> contours;      ///< length of the edges shared with each of those
 };
 std::vector<PartFigures> measureParts(const Mesh& mesh, const Segmentation& parts);
+
+/// Boxes of the parts along the principal axes of their area, and what `parts.merges` says of each.
+std::vector<format::PartShape> shapesOfParts(const Mesh& mesh, const Segmentation& parts,
+                                             std::span<const PartFigures> figures);
 
 /// Collects sections and streams, and joins them into the bytes of a file.
 class FileBuilder {

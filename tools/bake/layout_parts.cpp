@@ -25,17 +25,38 @@ std::vector<EdgePart> edgeParts(const Mesh& mesh, const Segmentation& parts) {
     return edges;
 }
 
-void findNeighbours(const Mesh& mesh, const Segmentation& parts, std::vector<PartFigures>& figures) {
+/// An edge that two parts share.
+struct Border {
+    uint32_t part, other;
+    double length;
+};
+
+/// By part and other, the edges between two parts in one order for both.
+std::vector<Border> bordersOf(const Mesh& mesh, const Segmentation& parts) {
     const std::vector<EdgePart> edges = edgeParts(mesh, parts);
+    std::vector<Border> borders;
     for (size_t i = 0; i < edges.size(); ++i) {
         for (size_t j = i + 1; j < edges.size() && edges[j][0] == edges[i][0] && edges[j][1] == edges[i][1]; ++j) {
-            figures[edges[i][2]].neighbours.push_back(edges[j][2]);
-            figures[edges[j][2]].neighbours.push_back(edges[i][2]);
+            const glm::dvec3 d = glm::dvec3(mesh.positions[edges[i][1]]) - glm::dvec3(mesh.positions[edges[i][0]]);
+            const double length = std::sqrt(glm::dot(d, d));
+            borders.push_back({edges[i][2], edges[j][2], length});
+            borders.push_back({edges[j][2], edges[i][2], length});
         }
     }
-    for (PartFigures& part : figures) {
-        std::sort(part.neighbours.begin(), part.neighbours.end());
-        part.neighbours.erase(std::unique(part.neighbours.begin(), part.neighbours.end()), part.neighbours.end());
+    std::stable_sort(borders.begin(), borders.end(), [](const Border& a, const Border& b) {
+        return a.part != b.part ? a.part < b.part : a.other < b.other;
+    });
+    return borders;
+}
+
+void findNeighbours(const Mesh& mesh, const Segmentation& parts, std::vector<PartFigures>& figures) {
+    const std::vector<Border> borders = bordersOf(mesh, parts);
+    for (size_t i = 0, j = 0; i < borders.size(); i = j) {
+        double length = 0;
+        for (; j < borders.size() && borders[j].part == borders[i].part && borders[j].other == borders[i].other; ++j)
+            length += borders[j].length;
+        figures[borders[i].part].neighbours.push_back(borders[i].other);
+        figures[borders[i].part].contours.push_back(float(length));
     }
 }
 

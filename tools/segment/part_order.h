@@ -16,4 +16,8 @@ using PartNamer = std::function<std::string(uint32_t part, uint32_t label)>;
 /// twice are made unique by a suffix.
 Segmentation orderParts(const Mesh& mesh, std::span<const uint32_t> faceLabels, const PartNamer& name);
 
+/// Names parts after the node, else the material, that holds nearly all of a part and no other: where the mesh has
+/// several. Names stay unique; those of other parts stay.
+void nameParts(const Mesh& mesh, Segmentation& parts);
+
 } // namespace xgc::bake

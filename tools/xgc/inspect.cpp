@@ -41,14 +41,20 @@ uint64_t geometryBytes(const AssetView& asset) {
     return bytes;
 }
 
+Json boxJson(const format::PartShape& shape) {
+    return {{"center", shape.boxCenter}, {"axes", shape.boxAxes}, {"halfSizes", shape.boxHalfSizes}};
+}
+
+Json mergesJson(const AssetView& asset) {
+    Json merges = Json::array();
+    for (const format::MergeRecord& m : asset.merges) merges.push_back({{"a", m.a}, {"b", m.b}, {"cost", m.cost}});
+    return merges;
+}
+
 Json partsJson(const AssetView& asset) {
     Json parts = Json::array();
     for (uint32_t p = 0; p < asset.parts.size(); ++p) {
         const format::PartRecord& part = asset.parts[p];
-        Json neighbours = Json::array();
-        for (uint32_t n = 0; n < part.neighbourCount; ++n) {
-            neighbours.push_back(asset.partNeighbours[part.firstNeighbour + n]);
-        }
         parts.push_back({{"id", p},
                          {"name", std::string(asset.text(part.name))},
                          {"stableId", fmt::format("{:016x}", part.stableId)},
@@ -57,7 +63,11 @@ Json partsJson(const AssetView& asset) {
                          {"patches", part.patchCount},
                          {"area", part.area},
                          {"centroid", {part.centroid[0], part.centroid[1], part.centroid[2]}},
-                         {"neighbours", neighbours}});
+                         {"neighbours", asset.neighboursOf(p)}});
+        if (!asset.contours.empty()) parts.back()["contours"] = asset.contoursOf(p);
+        if (asset.partShapes.empty()) continue;
+        parts.back()["box"] = boxJson(asset.partShapes[p]);
+        parts.back()["salience"] = asset.partShapes[p].salience;
     }
     return parts;
 }
@@ -99,6 +109,7 @@ Json inspectJson(const OpenAsset& opened) {
     }
     json["positionStep"] = record.positionStep;
     json["partList"] = partsJson(asset);
+    json["merges"] = mergesJson(asset);
     json["provenance"] = Json::parse(asset.provenance, nullptr, false);
     if (json["provenance"].is_discarded()) json["provenance"] = nullptr;
     return json;
@@ -109,6 +120,44 @@ void printStreams(const OpenAsset& opened, double faces) {
     for (const format::StreamRecord& s : opened.streams) {
         fmt::print("{:>14} {} {:>8} {:>18.2f} {:>18.2f}\n", bake::streamName(s.kind), s.set, codecName(s.codec),
                    double(s.storedBytes) / faces, double(s.rawBytes) / faces);
+    }
+}
+
+std::string vectorText(const float (&v)[3]) {
+    return fmt::format("({:.4g} {:.4g} {:.4g})", v[0], v[1], v[2]);
+}
+
+void printPart(const AssetView& asset, uint32_t p) {
+    const format::PartRecord& part = asset.parts[p];
+    fmt::print("{}  {}: {} faces, area {:.4g}, centroid {}\n", p, asset.text(part.name), part.faceCount, part.area,
+               vectorText(part.centroid));
+    if (!asset.partShapes.empty()) {
+        const format::PartShape& shape = asset.partShapes[p];
+        fmt::print("    box at {}, half sizes {}, along {} {} {}\n", vectorText(shape.boxCenter),
+                   vectorText(shape.boxHalfSizes), vectorText(shape.boxAxes[0]), vectorText(shape.boxAxes[1]),
+                   vectorText(shape.boxAxes[2]));
+        fmt::print("    salience {:.3f}\n", shape.salience);
+    }
+    const std::span<const uint32_t> neighbours = asset.neighboursOf(p);
+    const std::span<const float> contours = asset.contoursOf(p);
+    for (size_t n = 0; n < neighbours.size(); ++n) {
+        fmt::print("    beside {} {}", neighbours[n], asset.text(asset.parts[neighbours[n]].name));
+        if (!contours.empty()) fmt::print(": contour {:.4g}", contours[n]);
+        fmt::print("\n");
+    }
+}
+
+void printPartList(const AssetView& asset) {
+    for (uint32_t p = 0; p < asset.parts.size(); ++p) printPart(asset, p);
+    if (asset.merges.empty()) {
+        fmt::print("no parts join\n");
+        return;
+    }
+    fmt::print("{:>6} {:>8}  {}\n", "parts", "cost", "by joining");
+    auto left = uint32_t(asset.parts.size());
+    for (const format::MergeRecord& m : asset.merges) {
+        fmt::print("{:>6} {:>8.3f}  {} {} and {} {}\n", --left, m.cost, m.a, asset.text(asset.parts[m.a].name), m.b,
+                   asset.text(asset.parts[m.b].name));
     }
 }
 
@@ -138,30 +187,35 @@ void printText(const std::string& file, const OpenAsset& opened) {
     }
 }
 
-bake::Status runInspect(const std::string& file, bool json) {
+struct InspectArguments {
+    std::string file;
+    bool json = false;
+    bool parts = false;
+};
+
+bake::Status runInspect(const InspectArguments& arguments) {
     OpenAsset asset;
-    if (bake::Status s = openAsset(file, asset); !s.ok()) return s;
-    if (json)
+    if (bake::Status s = openAsset(arguments.file, asset); !s.ok()) return s;
+    if (arguments.json)
         fmt::print("{}\n", inspectJson(asset).dump(2, ' ', false, Json::error_handler_t::replace));
+    else if (arguments.parts)
+        printPartList(asset.view);
     else
-        printText(file, asset);
+        printText(arguments.file, asset);
     return {};
 }
 
 } // namespace
 
 void addInspect(CLI::App& app, Run& run) {
-    struct Arguments {
-        std::string file;
-        bool json = false;
-    };
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<InspectArguments>();
     CLI::App* inspect = app.add_subcommand("inspect", "Print what an asset holds: sizes, levels, parts");
     inspect->add_option("FILE", arguments->file, "An .xgc file")->required();
     inspect->add_flag("--json", arguments->json, "Print JSON (documented in tools/README.md)");
+    inspect->add_flag("--parts", arguments->parts,
+                      "Print each part's area, centroid, box, salience and contours, and how parts would join");
     inspect->footer("Example: xgc inspect creature.xgc");
-    inspect->callback(
-        [arguments, &run] { run = [arguments] { return runInspect(arguments->file, arguments->json); }; });
+    inspect->callback([arguments, &run] { run = [arguments] { return runInspect(*arguments); }; });
 }
 
 } // namespace xgc::tool

@@ -42,6 +42,9 @@ struct AssetView {
     std::span<const format::FaceList> faceLists; ///< patch * listCount + list
     std::span<const format::PartRecord> parts;
     std::span<const uint32_t> partNeighbours;
+    std::span<const float> contours;               ///< beside partNeighbours, mesh units; empty where the file has none
+    std::span<const format::PartShape> partShapes; ///< a part each; empty where the file has none
+    std::span<const format::MergeRecord> merges;   ///< empty where no parts join (parts.h)
     std::span<const format::MaterialRecord> materials;
     std::span<const format::NodeRecord> nodes;
     std::string_view strings;
@@ -80,6 +83,15 @@ struct AssetView {
     }
     std::span<const uint32_t> patchesOf(uint32_t domain) const {
         return domainPatches.subspan(domains[domain].firstPatch, domains[domain].patchCount);
+    }
+    /// Parts that share an edge with a part.
+    std::span<const uint32_t> neighboursOf(uint32_t part) const {
+        return partNeighbours.subspan(parts[part].firstNeighbour, parts[part].neighbourCount);
+    }
+    /// Length of the contour with each of those, mesh units; empty where the file has none.
+    std::span<const float> contoursOf(uint32_t part) const {
+        if (contours.empty()) return {};
+        return contours.subspan(parts[part].firstNeighbour, parts[part].neighbourCount);
     }
     /// Vertex rows of a domain, and of a patch's interior (version 2: one tier).
     format::VertexRange domainRange(uint32_t domain) const { return vertexRanges[domain]; }

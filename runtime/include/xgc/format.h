@@ -38,14 +38,15 @@ enum class SectionId : uint32_t {
     pages = 16,          ///< PageRecord[]
     streams = 17,        ///< StreamRecord[]
     patchSlots = 18,     ///< u32[]: beside patchDomains, times tierCount: first slot of the domain in the patch
-    // Reserved for later versions of the writer; a reader skips ids that it does not know.
-    mergeTree = 64,
-    contours = 65,
+    // Optional: a reader skips ids that it does not know, and opens files without them.
+    mergeTree = 64, ///< MergeRecord[]: how parts would join, in order; needs partShapes
+    contours = 65,  ///< f32[]: beside partNeighbours: length of the contour between the two, mesh units
     morphTargets = 66,
     skins = 67,
     locks = 68,
     provenance = 69, ///< UTF-8 JSON: settings, hash of the input, version of the tool (written by version 2)
     patchTiers = 70, ///< per patch and tier after the first: its firsts and counts in that tier's pages
+    partShapes = 71, ///< PartShape[partCount]
 };
 
 /// How a section or stream lies in the file (FORMAT.md, "Codecs"). `open` reads none alone; xgc::load decodes the
@@ -192,6 +193,26 @@ struct PartRecord {
     uint32_t reserved[2];
 };
 static_assert(sizeof(PartRecord) == 64);
+
+/// What a part looks like, and when it joins another.
+struct PartShape {
+    float boxCenter[3];
+    float boxAxes[3][3]; ///< unit vectors at right angles, right-handed, along the longest side first
+    float boxHalfSizes[3];
+    float salience;    ///< how strongly it stands out: cost of the first merge that it is in, at most 1; 1: of none
+    uint32_t joinedBy; ///< merge in which it joins another; kNone: it stays to the end
+    uint32_t reserved[3];
+};
+static_assert(sizeof(PartShape) == 80);
+
+/// One step of joining parts: `b` joins `a`, a lower one, which stands for both from then on.
+struct MergeRecord {
+    uint32_t a;
+    uint32_t b;
+    float cost; ///< how much is lost: about .5 and more where people see two parts
+    uint32_t reserved;
+};
+static_assert(sizeof(MergeRecord) == 16);
 
 enum MaterialFlags : uint32_t { kDoubleSided = 1u << 0, kAlphaMask = 1u << 1, kAlphaBlend = 1u << 2 };
 

@@ -33,7 +33,10 @@ Segmentation PerceptualSegmenter::parts(const PerceptualOptions& options) const 
         const RegionsOfAll refined = refine(at, regions, uint32_t(std::clamp(wanted, 1.0, 1e6)));
         labels = options.detail < 1 ? join(labels, regions, refined) : split(at, labels, refined);
     }
-    return orderParts(at.mesh, labels.ofFace, [](uint32_t part, uint32_t) { return "part-" + std::to_string(part); });
+    Segmentation parts =
+        orderParts(at.mesh, labels.ofFace, [](uint32_t part, uint32_t) { return "part-" + std::to_string(part); });
+    nameParts(at.mesh, parts);
+    return parts;
 }
 
 std::vector<PartMerge> PerceptualSegmenter::merges(const Segmentation& parts) const {

@@ -26,12 +26,6 @@ struct PerceptualTrace {
     std::vector<float> lastCosts; ///< of its dearest merges, the last first: at most 32
 };
 
-/// One step of joining parts: `b` joins `a`, which goes by its own number from then on.
-struct PartMerge {
-    uint32_t a, b;
-    float cost; ///< how much is lost: about .5 and more where people see two parts
-};
-
 /// The parts that people see in a mesh: regions between concave contours, told apart by how thick they are and by what
 /// is in sight of each other inside (minima rule: Hoffman and Richards 1984; shape diameter: Shapira, Shamir, Cohen-Or
 /// 2008; lines of sight: Asafi, Goren, Cohen-Or 2013). One set of constants for every kind of object, no training.
@@ -47,7 +41,7 @@ public:
     PerceptualSegmenter(const PerceptualSegmenter&) = delete;
     PerceptualSegmenter& operator=(const PerceptualSegmenter&) = delete;
 
-    /// Parts "part-0" and on.
+    /// Parts "part-0" and on, or by the node or material that holds one of them alone.
     Segmentation parts(const PerceptualOptions& options) const;
     /// How parts of any origin would join, one by one, cheapest first: neighbours only, so as many parts are left as
     /// there are separate pieces.

@@ -11,10 +11,18 @@
 
 namespace xgc::bake {
 
+/// One step of joining parts: `b` joins `a`, a lower one, which goes by its own number from then on.
+struct PartMerge {
+    uint32_t a, b;
+    float cost; ///< how much is lost: about .5 and more where people see two parts
+};
+
 /// Parts of a mesh: an id per face, dense, ordered by area descending, ties by lowest face.
 struct Segmentation {
     std::vector<uint32_t> facePart;
     std::vector<std::string> partNames; ///< one a part, unique
+    /// How they would join, one by one (PerceptualSegmenter::merges); empty where nobody asked.
+    std::vector<PartMerge> merges = {};
     uint32_t partCount() const { return uint32_t(partNames.size()); }
 };
 
