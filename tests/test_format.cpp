@@ -436,11 +436,17 @@ TEST_CASE("a genealogy on which patches differ, or that leaves the domain, is re
 TEST_CASE("sections and streams of later versions are skipped") {
     test::ExactBytes bytes(withMadeVertices().bytes);
     const std::span<std::byte> b = bytes.span();
-    const size_t at = sectionAt(b, SectionId::provenance);
-    auto s = test::load<SectionRecord>(b, at);
-    s.id = SectionId(1000);
-    s.codec = Codec(7);
-    test::store(b, at, s);
+    const std::pair<SectionId, uint32_t> later[] = {{SectionId::mergeTree, 63},
+                                                    {SectionId::contours, 68},
+                                                    {SectionId::provenance, 1000},
+                                                    {SectionId::partShapes, 1001}};
+    for (const auto& [id, unknown] : later) {
+        const size_t at = sectionAt(b, id);
+        auto s = test::load<SectionRecord>(b, at);
+        s.id = SectionId(unknown);
+        s.codec = Codec(7);
+        test::store(b, at, s);
+    }
     bool found = false;
     for (uint32_t i = 0; i < withMadeVertices().asset.streams.size(); ++i) {
         const size_t where = elementAt(b, SectionId::streams, i);
@@ -457,6 +463,9 @@ TEST_CASE("sections and streams of later versions are skipped") {
     const xgc::Status status = openAll(b, view);
     REQUIRE_MESSAGE(status.ok(), status.message);
     CHECK(view.provenance.empty());
+    CHECK(view.partShapes.empty());
+    CHECK(view.contoursOf(1).empty());
+    CHECK(view.merges.empty());
     CHECK(view.birthLevels.empty());
 }
 

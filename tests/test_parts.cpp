@@ -14,7 +14,6 @@
 
 using namespace xgc;
 using namespace xgc::bake;
-using format::kNone;
 using format::PartShape;
 
 namespace {
