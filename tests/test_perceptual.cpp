@@ -11,6 +11,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 #include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include <map>
 #include <numeric>
@@ -486,4 +487,23 @@ TEST_CASE("real meshes: connected parts, far better than chance against people")
         error += randIndexError(inputLabels(w.mesh, parts), people) / double(kModels.size());
     }
     CHECK(error < 0.1);
+}
+
+TEST_CASE("real meshes: any number of threads gives the same parts") {
+    const std::filesystem::path data = test::dataDir(XGC_SOURCE_DIR);
+    if (data.empty()) {
+        MESSAGE("SKIPPED: real meshes (no XGC_DATA)");
+        return;
+    }
+    for (const uint32_t n : {21u, 121u, 241u, 381u}) {
+        const Welded w = welded(test::readOff(data / "psb" / "off" / fmt::format("{}.off", n)));
+        std::vector<uint32_t> first;
+        for (const int threads : {1, 2, 4}) {
+            const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
+            tbb::task_arena arena(threads);
+            const Segmentation parts = arena.execute([&] { return partsOf(w); });
+            if (threads == 1) first = parts.facePart;
+            CHECK(parts.facePart == first);
+        }
+    }
 }

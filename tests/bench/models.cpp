@@ -17,6 +17,18 @@ Source princeton(const std::filesystem::path& data, uint32_t number) {
     return {fmt::format("psb{}", number), data / "psb" / "off" / fmt::format("{}.off", number)};
 }
 
+bake::BundledModel bundledModel(const std::string& name) {
+    using bake::BundledModel;
+    constexpr std::array<std::pair<const char*, BundledModel>, 4> kOthers{{{"creature", BundledModel::creature},
+                                                                           {"shaft", BundledModel::shaft},
+                                                                           {"temple", BundledModel::temple},
+                                                                           {"tree", BundledModel::tree}}};
+    for (const auto& [other, which] : kOthers) {
+        if (name == other) return which;
+    }
+    return BundledModel::terrain;
+}
+
 /// Grows regions breadth first from their seeds: region of each face and the order in which faces were reached.
 std::vector<uint32_t> grow(const bake::Topology& topology, std::span<const uint32_t> seeds,
                            std::vector<uint32_t>& region) {
@@ -96,8 +108,7 @@ bake::Status load(const Source& source, Subject& out) {
     if (!source.file.empty()) {
         if (bake::Status s = bake::importModel(source.file, model); !s.ok()) return s;
     } else {
-        const auto which = source.name == "temple" ? bake::BundledModel::temple : bake::BundledModel::terrain;
-        model = bake::makeModel(which, source.faces);
+        model = bake::makeModel(bundledModel(source.name), source.faces);
     }
     out.name = source.name;
     if (source.plain) model.attributes = {};

@@ -6,20 +6,11 @@
 
 namespace xgc::bake {
 
-namespace {
-
-/// What a component is segmented with: smaller ones of a mesh need less.
-struct Resolution {
-    uint32_t leastCells, mostCells, superfacets;
-};
-
 Resolution resolutionFor(double share) {
     const double s = std::sqrt(share);
     return {uint32_t(std::max(500.0, 6000 * s)), uint32_t(std::max(2000.0, 24000 * s)),
             share > 0.5 ? 450u : uint32_t(std::max(40.0, 450 * s))};
 }
-
-} // namespace
 
 Component analyseComponent(Piece piece, double share) {
     const Resolution resolution = resolutionFor(share);

@@ -24,7 +24,14 @@ struct Component {
     uint32_t islands() const { return superfacets.count() - uint32_t(merges.size()); }
 };
 
+/// What a component is segmented with: smaller ones of a mesh need less.
+struct Resolution {
+    uint32_t leastCells, mostCells, superfacets;
+};
 /// `share`: of the area of the whole mesh, over 0 to 1.
+Resolution resolutionFor(double share);
+
+/// `share` likewise.
 Component analyseComponent(Piece piece, double share);
 
 /// The superfacets merged down to `count` regions, their contours smoothed: about as many.

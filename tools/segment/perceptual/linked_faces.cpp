@@ -22,12 +22,13 @@ public:
         linked_.corners.resize(faces);
         linked_.neighbours.assign(faces, glm::uvec3(kNone));
         linked_.standsFor.resize(faces);
+        state_.resize(faces);
         for (uint32_t f = 0; f < faces; ++f) {
-            linked_.corners[f] = mesh_.facePositions(f);
-            linked_.standsFor[f] = f;
+            const glm::uvec3 c = linked_.corners[f] = mesh_.facePositions(f);
+            linked_.standsFor[f] = lowestAlike(f);
+            state_[f] = uint8_t(int(c.x < c.y) | int(c.y < c.z) << 1 | int(c.z < c.x) << 2);
         }
-        findRepeated();
-        for (uint32_t e = 0; e < topology_.edges.size(); ++e) linkEdge(e);
+        for (uint32_t f = 0; f < faces; ++f) linkSides(f);
         windComponents();
         return std::move(linked_);
     }
@@ -39,16 +40,25 @@ private:
     }
     uint32_t oppositeOf(uint32_t f, uint32_t edge) const { return linked_.corners[f][(sideOf(f, edge) + 2) % 3]; }
 
-    void findRepeated() {
-        for (uint32_t e = 0; e < topology_.edges.size(); ++e) {
-            const std::span<const uint32_t> faces = topology_.facesOfEdge(e);
-            for (size_t i = 1; i < faces.size(); ++i) {
-                for (size_t j = 0; j < i; ++j) {
-                    if (oppositeOf(faces[i], e) != oppositeOf(faces[j], e)) continue;
-                    linked_.standsFor[faces[i]] =
-                        faces[j]; // faces of an edge rise: j stands for itself or is lower yet
-                    break;
-                }
+    /// The lowest face over the same positions: they share every edge.
+    uint32_t lowestAlike(uint32_t f) const {
+        const glm::uvec3 own = topology_.faceEdges[f];
+        for (const uint32_t g : topology_.facesOfEdge(own.x)) {
+            if (g == f) break;
+            const glm::uvec3 other = topology_.faceEdges[g];
+            if (own.y == other.x || own.y == other.y || own.y == other.z) return g;
+        }
+        return f;
+    }
+
+    void linkSides(uint32_t f) {
+        const glm::uvec3 edges = topology_.faceEdges[f];
+        for (int k = 0; k < 3; ++k) {
+            const std::span<const uint32_t> faces = topology_.facesOfEdge(edges[k]);
+            if (faces.size() == 2) {
+                if (linked_.standsFor[faces[1]] == faces[1]) linked_.neighbours[f][k] = faces[f == faces[0]];
+            } else if (faces.size() > 2 && faces[0] == f) {
+                linkLeaves(edges[k], faces);
             }
         }
     }
@@ -58,13 +68,8 @@ private:
         linked_.neighbours[g][int(sideOf(g, edge))] = f;
     }
 
-    void linkEdge(uint32_t edge) {
-        const std::span<const uint32_t> faces = topology_.facesOfEdge(edge);
-        if (faces.size() < 2) return;
-        if (faces.size() == 2) {
-            if (linked_.standsFor[faces[1]] == faces[1]) link(edge, faces[0], faces[1]);
-            return;
-        }
+    /// An edge of more than two faces.
+    void linkLeaves(uint32_t edge, std::span<const uint32_t> faces) {
         leaves_.clear();
         for (const uint32_t f : faces) {
             if (linked_.standsFor[f] == f) leaves_.push_back({f, directionOf(f, edge)});
@@ -105,38 +110,35 @@ private:
     }
 
     void windComponents() {
-        turned_.assign(mesh_.faces.size(), 0);
-        std::vector<uint8_t> seen(mesh_.faces.size(), 0);
         std::vector<uint32_t>& walk = linked_.componentFaces;
         walk.reserve(mesh_.faces.size());
         linked_.componentOffsets.push_back(0);
         for (uint32_t seed = 0; seed < mesh_.faceCount(); ++seed) {
-            if (seen[seed] || linked_.standsFor[seed] != seed) continue;
+            if ((state_[seed] & kSeen) || linked_.standsFor[seed] != seed) continue;
             const size_t begin = walk.size();
             walk.push_back(seed);
-            seen[seed] = 1;
-            for (size_t i = begin; i < walk.size(); ++i) visitNeighbours(walk[i], seen);
+            state_[seed] |= kSeen;
+            for (size_t i = begin; i < walk.size(); ++i) visitNeighbours(walk[i]);
             settle(std::span(walk).subspan(begin));
             linked_.componentOffsets.push_back(uint32_t(walk.size()));
         }
-        for (const uint32_t f : walk) {
-            if (!turned_[f]) continue;
+        for (uint32_t f = 0; f < mesh_.faceCount(); ++f) {
+            if (!(state_[f] & kTurned)) continue;
             std::swap(linked_.corners[f].y, linked_.corners[f].z);
             std::swap(linked_.neighbours[f].x, linked_.neighbours[f].z);
         }
     }
 
-    /// True where the face runs along its edge k from the lower position to the higher.
-    bool runsForward(uint32_t f, int k) const { return linked_.corners[f][k] < linked_.corners[f][(k + 1) % 3]; }
-
-    void visitNeighbours(uint32_t f, std::vector<uint8_t>& seen) {
+    void visitNeighbours(uint32_t f) {
+        const glm::uvec3 neighbours = linked_.neighbours[f];
+        const uint8_t own = state_[f];
         for (int k = 0; k < 3; ++k) {
-            const uint32_t g = linked_.neighbours[f][k];
-            if (g == kNone || seen[g]) continue;
-            const int side = int(sideOf(g, topology_.faceEdges[f][k]));
-            const bool agree = runsForward(f, k) != runsForward(g, side);
-            turned_[g] = uint8_t(agree ? turned_[f] : !turned_[f]);
-            seen[g] = 1;
+            const uint32_t g = neighbours[k];
+            if (g == kNone || (state_[g] & kSeen)) continue;
+            const glm::uvec3 back = linked_.neighbours[g]; // faces that are linked share one edge
+            const int side = back.x == f ? 0 : back.y == f ? 1 : 2;
+            const bool agree = (own >> k & 1) != (state_[g] >> side & 1);
+            state_[g] |= uint8_t(kSeen | ((own & kTurned) ^ (agree ? 0 : kTurned)));
             linked_.componentFaces.push_back(g);
         }
     }
@@ -148,24 +150,25 @@ private:
         for (const uint32_t f : faces) {
             const glm::uvec3 c = linked_.corners[f], n = linked_.neighbours[f];
             openEdges += size_t(n.x == kNone) + size_t(n.y == kNone) + size_t(n.z == kNone);
-            turnedCount += turned_[f];
+            turnedCount += bool(state_[f] & kTurned);
             const glm::dvec3 p = glm::dvec3(mesh_.positions[c.x]) - origin,
                              q = glm::dvec3(mesh_.positions[c.y]) - origin,
                              r = glm::dvec3(mesh_.positions[c.z]) - origin;
             const double v = glm::dot(p, glm::cross(q, r));
-            volume += turned_[f] ? -v : v;
+            volume += state_[f] & kTurned ? -v : v;
         }
         const bool nearlyClosed = openEdges * 20 < faces.size();
         const bool turn = nearlyClosed ? volume < 0 : turnedCount * 2 > faces.size();
         if (!turn) return;
-        for (const uint32_t f : faces) turned_[f] ^= 1;
+        for (const uint32_t f : faces) state_[f] ^= kTurned;
     }
 
     const Mesh& mesh_;
     const Topology& topology_;
     LinkedFaces linked_;
     std::vector<Leaf> leaves_;
-    std::vector<uint8_t> turned_;
+    std::vector<uint8_t> state_; ///< per face: bit k, its edge k runs from the lower position to the higher; and these
+    static constexpr uint8_t kSeen = 8, kTurned = 16;
 };
 
 } // namespace

@@ -6,11 +6,30 @@
 
 namespace xgc::bake {
 
+namespace {
+
+/// `marks` has an entry per face of the mesh. Many faces are marked and looked through, few are sorted.
+std::vector<uint32_t> inRisingOrder(std::span<const uint32_t> faces, std::vector<uint32_t>& marks) {
+    std::vector<uint32_t> rising;
+    if (faces.size() < marks.size() / 16) {
+        rising.assign(faces.begin(), faces.end());
+        std::sort(rising.begin(), rising.end());
+        return rising;
+    }
+    for (const uint32_t f : faces) marks[f] = 0;
+    rising.reserve(faces.size());
+    for (uint32_t f = 0; f < marks.size(); ++f) {
+        if (marks[f] == 0) rising.push_back(f);
+    }
+    return rising;
+}
+
+} // namespace
+
 Piece extractPiece(const Mesh& mesh, const LinkedFaces& linked, std::span<const uint32_t> faces,
                    std::span<const double> faceAreas, double area, PieceScratch& scratch) {
     Piece piece;
-    piece.face.assign(faces.begin(), faces.end());
-    std::sort(piece.face.begin(), piece.face.end());
+    piece.face = inRisingOrder(faces, scratch.ofFace);
     for (uint32_t t = 0; t < piece.face.size(); ++t) scratch.ofFace[piece.face[t]] = t;
 
     glm::dvec3 centroid(0);
@@ -24,6 +43,10 @@ Piece extractPiece(const Mesh& mesh, const LinkedFaces& linked, std::span<const 
     piece.centroid = centroid;
     piece.scale = scale;
     std::vector<uint32_t> used;
+    used.reserve(faces.size());
+    piece.positions.reserve(faces.size() / 2 + 2);
+    piece.triangles.reserve(faces.size());
+    piece.neighbours.reserve(faces.size());
     for (const uint32_t f : piece.face) {
         glm::uvec3 corners, neighbours;
         for (int k = 0; k < 3; ++k) {
