@@ -13,7 +13,7 @@ inline constexpr std::array<const char*, 11> kSegmentStages{
 
 struct StageCost {
     double seconds = 0; ///< of the processor
-    uint64_t peak = 0; ///< bytes of the process at most during the stage
+    uint64_t peak = 0;  ///< bytes of the process at most during the stage
 };
 using StageCosts = std::array<StageCost, kSegmentStages.size()>;
 
