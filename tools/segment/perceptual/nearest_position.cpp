@@ -28,23 +28,27 @@ void NearestPosition::build(size_t begin, size_t end, int axis) {
     build(middle + 1, end, (axis + 1) % 3);
 }
 
-void NearestPosition::search(size_t begin, size_t end, int axis, const glm::dvec3& point, Best& best) const {
-    if (begin >= end) return;
+/// `away`: from the point to the range's box, along each axis.
+void NearestPosition::search(size_t begin, size_t end, int axis, const glm::dvec3& point, const glm::dvec3& away,
+                             Best& best) const {
+    if (begin >= end || glm::dot(away, away) > best.squareDistance) return;
     const size_t middle = begin + (end - begin) / 2;
     const uint32_t at = order_[middle];
     const glm::dvec3 step = glm::dvec3(positions_[at]) - point;
     const double square = glm::dot(step, step);
     if (square < best.squareDistance || (square == best.squareDistance && at < best.index)) best = {square, at};
-    const double beyond = point[axis] - double(positions_[at][axis]);
     const int next = (axis + 1) % 3;
-    const bool lowFirst = beyond < 0;
-    if (lowFirst || beyond * beyond <= best.squareDistance) search(begin, middle, next, point, best);
-    if (!lowFirst || beyond * beyond <= best.squareDistance) search(middle + 1, end, next, point, best);
+    const bool lowFirst = step[axis] > 0;
+    glm::dvec3 across = away;
+    across[axis] = step[axis];
+    if (lowFirst) search(begin, middle, next, point, away, best);
+    search(middle + 1, end, next, point, lowFirst ? across : away, best);
+    if (!lowFirst) search(begin, middle, next, point, across, best);
 }
 
 uint32_t NearestPosition::of(const glm::vec3& point) const {
     Best best;
-    search(0, order_.size(), 0, glm::dvec3(point), best);
+    search(0, order_.size(), 0, glm::dvec3(point), glm::dvec3(0), best);
     return best.index;
 }
 

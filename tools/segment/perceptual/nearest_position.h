@@ -19,7 +19,7 @@ public:
 private:
     struct Best;
     void build(size_t begin, size_t end, int axis);
-    void search(size_t begin, size_t end, int axis, const glm::dvec3& point, Best& best) const;
+    void search(size_t begin, size_t end, int axis, const glm::dvec3& point, const glm::dvec3& away, Best& best) const;
 
     std::span<const glm::vec3> positions_;
     std::vector<uint32_t> order_; ///< the middle of a range parts it
