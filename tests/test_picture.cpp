@@ -176,6 +176,27 @@ TEST_CASE("the first part colours differ well from each other") {
     CHECK(partColor(0xffffffffu) == partColor(0xffffffffu));
 }
 
+TEST_CASE("parts at a common edge differ in colour, even where the palette comes round between them") {
+    constexpr uint32_t kCount = 289;
+    std::vector<glm::vec3> positions = {{0, 0, 0}};
+    for (uint32_t i = 0; i <= kCount; ++i) positions.emplace_back(1, float(i), 0);
+    std::vector<glm::uvec3> fan;
+    for (uint32_t i = 1; i <= kCount; ++i) fan.emplace_back(0, i, i + 1);
+    const Mesh mesh = test::welded(test::modelOf(positions, fan));
+    Segmentation parts;
+    parts.partNames.resize(kCount);
+    uint32_t clashes = 0;
+    for (uint32_t f = 0; f < kCount; ++f) parts.facePart.push_back(f * kPartColorCount % kCount);
+    const std::vector<glm::vec3> colors = partColors(buildTopology(mesh), parts);
+    REQUIRE(colors.size() == kCount);
+    for (uint32_t f = 1; f < kCount; ++f) {
+        clashes += partColor(parts.facePart[f]) == partColor(parts.facePart[f - 1]);
+        CHECK(colors[f] != colors[f - 1]);
+    }
+    CHECK(clashes > 100);
+    CHECK(partColor(kPartColorCount) == partColor(0));
+}
+
 TEST_CASE("sRGB encoding is its standard's to a step of 8 bits, and decoding its inverse") {
     for (int i = 0; i <= 255; ++i) {
         const float linear = float(i) / 255;

@@ -12,6 +12,7 @@ namespace xgc::bake {
 /// A colour for a part or patch, linear RGB: the first 24 differ well from each other, later ones are their lighter
 /// and darker tones. The same in every picture of the project.
 glm::vec3 partColor(uint32_t part);
+inline constexpr uint32_t kPartColorCount = 72; ///< partColor comes round after so many
 
 /// sRGB encoding of linear values in [0,1] and back, by square roots and Newton's steps: within a step of 8 bits
 /// of the standard's curves, and the same on any machine.
@@ -44,8 +45,8 @@ struct PictureOptions {
 Image drawPicture(const Mesh& mesh, const Topology& topology, std::span<const glm::vec3> faceColors,
                   std::span<const PictureLine> lines, const PictureOptions& options);
 
-/// A face's colour by its part.
-std::vector<glm::vec3> partColors(const Segmentation& parts);
+/// A face's colour by its part: partColor's, or a later one where a lower part at a common edge has it.
+std::vector<glm::vec3> partColors(const Topology& topology, const Segmentation& parts);
 
 /// The thesis's figure 3.4 of any mesh: edges by kind (convex blue, concave red, flat grey) over grey triangles; the
 /// regions as they were filled; the parts after merging. `options.lineWidth` is the widest that an edge gets; it is
