@@ -174,15 +174,32 @@ private:
             if (sets[i].first == sets[i - 1].first) loose.push_back(sets[i].second);
         }
         std::sort(loose.begin(), loose.end());
-        for (const uint32_t set : loose) giveAway(set);
+        giveAway(loose);
         return !loose.empty();
     }
 
-    void giveAway(uint32_t set) {
-        std::vector<uint32_t> members, around;
+    /// `loose`: sets, rising.
+    void giveAway(std::span<const uint32_t> loose) {
+        std::vector<uint8_t> isLoose(set_.size(), 0);
+        for (const uint32_t set : loose) isLoose[set] = 1;
+        std::vector<std::pair<uint32_t, uint32_t>> members; // set, face
         for (const uint32_t t : band_) {
-            if (find(nodeOf(t)) == set) members.push_back(faceOf(t));
+            const uint32_t set = find(nodeOf(t));
+            if (isLoose[set]) members.emplace_back(set, faceOf(t));
         }
+        std::stable_sort(members.begin(), members.end(),
+                         [](const auto& a, const auto& b) { return a.first < b.first; });
+        std::vector<uint32_t> faces;
+        for (size_t i = 0; i < members.size();) {
+            faces.clear();
+            for (const uint32_t set = members[i].first; i < members.size() && members[i].first == set; ++i)
+                faces.push_back(members[i].second);
+            giveAwayFaces(faces);
+        }
+    }
+
+    void giveAwayFaces(std::span<const uint32_t> members) {
+        std::vector<uint32_t> around;
         for (const uint32_t f : members) {
             for (int k = 0; k < 3; ++k) {
                 const uint32_t g = linked_.neighbours[f][k];
