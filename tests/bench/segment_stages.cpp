@@ -66,7 +66,7 @@ StageCosts segmentInStages(const bake::Mesh& mesh) {
     c.superfacets = watch.stage([&] { return bake::growSuperfacets(graph, c.features, resolution.superfacets); });
     const bake::RayScene scene = watch.stage([&] { return bake::RayScene(c.cells.soup); });
     const std::vector<glm::vec3>& normals = c.features.isNoisy() ? c.features.filteredNormals : graph.normals;
-    c.diameters = watch.stage([&] { return bake::shapeDiameters(graph, c.superfacets, normals, scene); });
+    c.diameters = watch.stage([&] { return bake::shapeDiameters(graph, c.superfacets, normals, scene, c.cells.skin); });
     c.lines = watch.stage([&] { return bake::findLinesOfSight(graph, c.superfacets, normals, c.diameters, scene); });
     c.merges = watch.stage(
         [&] { return bake::mergeRegions(graph, c.features, bake::firstRegions(c.superfacets), c.diameters, c.lines); });

@@ -8,6 +8,11 @@ namespace xgc::bake {
 
 namespace {
 
+/// Rays need no finer surface than this (of an area of 1), and a smaller one is met sooner.
+constexpr float kSoupSpacing = 0.008f;
+/// Fewer triangles than this stay as they are.
+constexpr uint32_t kPlainSoup = 8000;
+
 struct TriangleShape {
     glm::vec3 center, normal; ///< normal as long as the area
     float area;
@@ -241,15 +246,17 @@ Cells makeCells(const Piece& piece, uint32_t most) {
     const std::vector<TriangleShape> shapes = shapesOf(piece);
     Cells cells;
     uint32_t count = piece.triangleCount();
+    float soupSpacing = kSoupSpacing;
     if (double(count) > 1.5 * most) {
         const float spacing = 1.35f * std::sqrt(1.0f / float(most));
         cells.ofTriangle = joinTriangles(piece, shapes, spacing, 0.3f / float(most), count);
-        cells.soup = clusteredSoup(piece, 0.9f * spacing);
+        soupSpacing = std::max(soupSpacing, 0.9f * spacing);
     } else {
         cells.ofTriangle.resize(count);
         std::iota(cells.ofTriangle.begin(), cells.ofTriangle.end(), 0u);
-        cells.soup = plainSoup(piece);
     }
+    cells.soup = piece.triangleCount() > kPlainSoup ? clusteredSoup(piece, soupSpacing) : plainSoup(piece);
+    cells.skin = 0.5f * soupSpacing;
     addShapes(shapes, cells.ofTriangle, count, cells.graph);
     addLinks(piece, cells.ofTriangle, cells.graph);
     addArcs(cells.graph);

@@ -29,7 +29,8 @@ struct CellGraph {
 struct Cells {
     CellGraph graph;
     std::vector<uint32_t> ofTriangle; ///< of the piece
-    std::vector<glm::vec3> soup;      ///< three corners a triangle: what rays meet
+    std::vector<glm::vec3> soup;      ///< three corners a triangle: what rays meet, about the piece's surface
+    float skin = 0;                   ///< rays that start on the surface meet nothing nearer than this
 };
 
 /// A cell a triangle, or where there are more than 1.5 times `most`, patches of neighbours that lie in the same cube of

@@ -29,7 +29,7 @@ Component analyseComponent(Piece piece, double share) {
     const RayScene scene(component.cells.soup);
     const std::vector<glm::vec3>& normals =
         component.features.isNoisy() ? component.features.filteredNormals : graph.normals;
-    component.diameters = shapeDiameters(graph, component.superfacets, normals, scene);
+    component.diameters = shapeDiameters(graph, component.superfacets, normals, scene, component.cells.skin);
     component.lines = findLinesOfSight(graph, component.superfacets, normals, component.diameters, scene);
     component.cells.soup = {};
     component.merges = mergeRegions(graph, component.features, firstRegions(component.superfacets), component.diameters,

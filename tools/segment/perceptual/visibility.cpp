@@ -53,9 +53,9 @@ Members membersOf(const Superfacets& superfacets) {
 }
 
 /// Weighted mean of the hits within a standard deviation of their median; `missed` where nothing was hit.
-float depthFrom(const CellGraph& graph, uint32_t cell, const glm::vec3& normal, const Cone& cone,
-                const RayScene& scene) {
-    constexpr float kMissed = 0.1f, kSkin = 1e-4f;
+float depthFrom(const CellGraph& graph, uint32_t cell, const glm::vec3& normal, const Cone& cone, const RayScene& scene,
+                float skin) {
+    constexpr float kMissed = 0.1f;
     const glm::vec3 inwards = -normal;
     const glm::vec3 helper = std::abs(inwards.x) < 0.6f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
     const glm::vec3 crossed = glm::cross(inwards, helper);
@@ -66,7 +66,7 @@ float depthFrom(const CellGraph& graph, uint32_t cell, const glm::vec3& normal, 
     size_t hits = 0;
     for (uint32_t r = 0; r < kRays; ++r) {
         const glm::vec3& d = cone.direction[r];
-        const float at = scene.nearestHit(graph.centers[cell], side * d.x + up * d.y + inwards * d.z, kSkin);
+        const float at = scene.nearestHit(graph.centers[cell], side * d.x + up * d.y + inwards * d.z, skin);
         if (at < 0) continue;
         depth[hits] = at;
         weight[hits++] = cone.weight[r];
@@ -133,14 +133,15 @@ bool isSampled(uint32_t i, uint32_t j) {
 } // namespace
 
 std::vector<float> shapeDiameters(const CellGraph& graph, const Superfacets& superfacets,
-                                  std::span<const glm::vec3> normals, const RayScene& scene) {
+                                  std::span<const glm::vec3> normals, const RayScene& scene, float skin) {
     const Cone cone = makeCone();
     const Members members = membersOf(superfacets);
     std::vector<float> diameters(superfacets.count());
     tbb::parallel_for(0u, superfacets.count(), [&](uint32_t s) {
         std::array<float, kProbes> depth;
         const std::array<uint32_t, kProbes> probes = probesOf(graph, members.of(s));
-        for (uint32_t i = 0; i < kProbes; ++i) depth[i] = depthFrom(graph, probes[i], normals[probes[i]], cone, scene);
+        for (uint32_t i = 0; i < kProbes; ++i)
+            depth[i] = depthFrom(graph, probes[i], normals[probes[i]], cone, scene, skin);
         std::sort(depth.begin(), depth.end());
         diameters[s] = float(exact::ln(std::max(1e-4, double(depth[kProbes / 2]))));
     });
