@@ -21,6 +21,11 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr uint32_t kFaces = 6000;
+#if defined(__has_feature)
+constexpr bool kIsSanitized = __has_feature(address_sanitizer);
+#else
+constexpr bool kIsSanitized = false;
+#endif
 const std::map<std::string, BundledModel> kModels = {{"creature", BundledModel::creature},
                                                      {"shaft", BundledModel::shaft},
                                                      {"terrain", BundledModel::terrain},
@@ -85,10 +90,11 @@ TEST_CASE("baked models are the same bytes on any compiler, for any number of th
         REQUIRE(exportModel(makeModel(which, kFaces), input).ok());
         for (const Variant& variant : kVariants) {
             const std::string key = fmt::format("{}-{}", model, variant.name);
-            const uint64_t hash = hashOfBaked(input, variant, 1);
+            const uint64_t hash = hashOfBaked(input, variant, 2);
             if (print) fmt::print("{} {:016x}\n", key, hash);
             CHECK_MESSAGE(hash == golden[key], fmt::format("{} is now {:016x}", key, hash));
-            CHECK_MESSAGE(hashOfBaked(input, variant, 2) == hash, fmt::format("{} differs with two threads", key));
+            if (kIsSanitized) continue; // slow: the other build compares the numbers of threads
+            CHECK_MESSAGE(hashOfBaked(input, variant, 1) == hash, fmt::format("{} differs with one thread", key));
         }
     }
 }
