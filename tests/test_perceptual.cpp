@@ -1,4 +1,5 @@
 #include "meshes/off.h"
+#include "meshes/welded.h"
 #include "segment/perceptual/exact_math.h"
 #include "segment/perceptual/min_cut.h"
 #include "segment/perceptual/nearest_position.h"
@@ -23,26 +24,15 @@ using namespace xgc::bake;
 
 namespace {
 
-struct Welded {
-    Mesh mesh;
-    Topology topology;
-};
-
-Welded welded(const Model& model) {
-    Welded w;
-    WeldReport report;
-    const Status status = weld(model, {}, w.mesh, report);
-    REQUIRE_MESSAGE(status.ok(), status.message);
-    w.topology = buildTopology(w.mesh);
-    return w;
-}
+using test::Welded;
+using test::weldedWithTopology;
 
 Segmentation partsOf(const Welded& w, const PerceptualOptions& options = {}) {
     return segmentPerceptual(w.mesh, w.topology, options);
 }
 
 Segmentation partsOf(const Model& model, const PerceptualOptions& options = {}) {
-    return partsOf(welded(model), options);
+    return partsOf(weldedWithTopology(model), options);
 }
 
 /// A copy moved by `offset` and scaled before that.
@@ -252,7 +242,7 @@ TEST_CASE("the nearest position is the one that a look at all finds") {
 }
 
 TEST_CASE("split triangles cover what they came from, edge to edge") {
-    const Welded w = welded(test::cube(1));
+    const Welded w = weldedWithTopology(test::cube(1));
     const LinkedFaces linked = linkFaces(w.mesh, w.topology);
     PieceScratch scratch = {std::vector<uint32_t>(w.mesh.positions.size(), bake::kNone),
                             std::vector<uint32_t>(w.mesh.faces.size(), bake::kNone)};
@@ -297,7 +287,7 @@ TEST_CASE("a mesh without area is one part") {
 
 TEST_CASE("each arm of a ball is a part, and the ball") {
     const Model model = ballWithArms(40, kFourArms);
-    const Welded w = welded(model);
+    const Welded w = weldedWithTopology(model);
     const Segmentation parts = partsOf(w);
     checkLabels(w, parts);
     CHECK(parts.partCount() == 5);
@@ -324,7 +314,7 @@ TEST_CASE("separate bodies are parts; crumbs go with what they lie nearest to") 
 
     std::vector<Model> withCrumb = table;
     withCrumb.push_back(placed(cube, glm::vec3(0.01f), {1, 1, -3.6f})); // below the second leg
-    const Welded w = welded(joined(withCrumb));
+    const Welded w = weldedWithTopology(joined(withCrumb));
     const Segmentation parts = partsOf(w);
     CHECK(parts.partCount() == 5);
     CHECK(parts.facePart.back() == parts.facePart[12 * 16 + 5]);
@@ -372,7 +362,7 @@ TEST_CASE("an edge of many faces does not break a body") {
         model.positions.push_back(fin * 0.4f);
         model.triangles.emplace_back(t.x, t.y, uint32_t(model.positions.size()) - 1);
     }
-    const Welded w = welded(test::modelOf(model.positions, model.triangles));
+    const Welded w = weldedWithTopology(test::modelOf(model.positions, model.triangles));
     const Segmentation parts = partsOf(w);
     checkLabels(w, parts);
     CHECK(parts.partCount() >= 5);
@@ -380,7 +370,7 @@ TEST_CASE("an edge of many faces does not break a body") {
 }
 
 TEST_CASE("scaling by a power of two changes nothing, and threads do not") {
-    const Welded w = welded(makeModel(BundledModel::creature, 9000));
+    const Welded w = weldedWithTopology(makeModel(BundledModel::creature, 9000));
     const Segmentation parts = partsOf(w);
     checkLabels(w, parts);
     Welded large = w;
@@ -397,7 +387,7 @@ TEST_CASE("the bundled models fall into sensible parts") {
                                                                            {BundledModel::temple, {20, 500}},
                                                                            {BundledModel::tree, {1, 100}}};
     for (const auto& [which, range] : kCounts) {
-        const Welded w = welded(makeModel(which, 8000));
+        const Welded w = weldedWithTopology(makeModel(which, 8000));
         const Segmentation parts = partsOf(w);
         checkLabels(w, parts);
         CHECK(parts.partCount() >= range.first);
@@ -408,7 +398,7 @@ TEST_CASE("the bundled models fall into sensible parts") {
 
 TEST_CASE("contours of very fine meshes leave every part connected") {
     for (const BundledModel which : {BundledModel::creature, BundledModel::terrain}) {
-        const Welded w = welded(makeModel(which, 60000)); // more faces than cells
+        const Welded w = weldedWithTopology(makeModel(which, 60000)); // more faces than cells
         const PerceptualSegmenter segmenter(w.mesh, w.topology);
         REQUIRE(segmenter.trace().front().cells < segmenter.trace().front().faces);
         for (const float detail : {1.0f, 0.5f, 2.0f}) {
@@ -420,7 +410,8 @@ TEST_CASE("contours of very fine meshes leave every part connected") {
 }
 
 TEST_CASE("as many parts as asked for") {
-    const Welded ball = welded(ballWithArms(30, kFourArms)), creature = welded(makeModel(BundledModel::creature, 9000));
+    const Welded ball = weldedWithTopology(ballWithArms(30, kFourArms)),
+                 creature = weldedWithTopology(makeModel(BundledModel::creature, 9000));
     const PerceptualSegmenter ballSegmenter(ball.mesh, ball.topology),
         creatureSegmenter(creature.mesh, creature.topology);
     for (uint32_t count = 1; count <= 40; ++count) {
@@ -433,7 +424,7 @@ TEST_CASE("as many parts as asked for") {
 
 TEST_CASE("less detail joins the default's parts, more splits them") {
     for (const BundledModel which : {BundledModel::creature, BundledModel::temple}) {
-        const Welded w = welded(makeModel(which, 9000));
+        const Welded w = weldedWithTopology(makeModel(which, 9000));
         const PerceptualSegmenter segmenter(w.mesh, w.topology);
         const Segmentation parts = segmenter.parts({});
         uint32_t before = 0;
@@ -450,7 +441,7 @@ TEST_CASE("less detail joins the default's parts, more splits them") {
 }
 
 TEST_CASE("merges join neighbours down to the separate pieces, the dearest last") {
-    const Welded w = welded(makeModel(BundledModel::creature, 9000));
+    const Welded w = weldedWithTopology(makeModel(BundledModel::creature, 9000));
     const PerceptualSegmenter segmenter(w.mesh, w.topology);
     for (const Segmentation& parts :
          {segmenter.parts({}), segmentByComponent(w.mesh, w.topology), segmentNone(w.mesh)}) {
@@ -476,7 +467,7 @@ TEST_CASE("real meshes: connected parts, far better than chance against people")
     double error = 0;
     const std::vector<uint32_t> kModels = {1, 81, 121, 161, 241, 281, 381};
     for (const uint32_t n : kModels) {
-        const Welded w = welded(test::readOff(data / "psb" / "off" / fmt::format("{}.off", n)));
+        const Welded w = weldedWithTopology(test::readOff(data / "psb" / "off" / fmt::format("{}.off", n)));
         const Segmentation parts = partsOf(w);
         checkLabels(w, parts);
         CHECK(looseSets(w, parts) == 0);
@@ -496,7 +487,7 @@ TEST_CASE("real meshes: any number of threads gives the same parts") {
         return;
     }
     for (const uint32_t n : {21u, 121u, 241u, 381u}) {
-        const Welded w = welded(test::readOff(data / "psb" / "off" / fmt::format("{}.off", n)));
+        const Welded w = weldedWithTopology(test::readOff(data / "psb" / "off" / fmt::format("{}.off", n)));
         std::vector<uint32_t> first;
         for (const int threads : {1, 2, 4}) {
             const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));

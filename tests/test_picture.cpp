@@ -1,3 +1,5 @@
+#include "meshes/welded.h"
+
 #include "meshes/builders.h"
 
 #include <xgc/bake/picture.h>
@@ -14,19 +16,8 @@ using namespace xgc::bake;
 
 namespace {
 
-struct Welded {
-    Mesh mesh;
-    Topology topology;
-};
-
-Welded welded(const Model& model) {
-    Welded w;
-    WeldReport report;
-    const Status status = weld(model, {}, w.mesh, report);
-    REQUIRE_MESSAGE(status.ok(), status.message);
-    w.topology = buildTopology(w.mesh);
-    return w;
-}
+using test::Welded;
+using test::weldedWithTopology;
 
 PictureOptions small() {
     PictureOptions options;
@@ -68,7 +59,7 @@ TEST_CASE("a picture fits its mesh, whatever its size and place") {
     for (const float scale : {1e-6f, 1.0f, 1e6f}) {
         Model model = test::sphere(10);
         for (glm::vec3& p : model.positions) p = (p + glm::vec3(5, -3, 2)) * scale;
-        const Extent e = drawnExtent(draw(welded(model), kRed, small()));
+        const Extent e = drawnExtent(draw(weldedWithTopology(model), kRed, small()));
         CHECK(e.top >= 1);
         CHECK(e.top <= 4);
         CHECK(e.bottom >= 59);
@@ -83,7 +74,7 @@ TEST_CASE("a wide mesh fits the width") {
     for (glm::vec3& p : model.positions) p.x *= 20;
     PictureOptions options = small();
     options.viewFrom = {0, 0, 1};
-    const Extent e = drawnExtent(draw(welded(model), kRed, options));
+    const Extent e = drawnExtent(draw(weldedWithTopology(model), kRed, options));
     CHECK(e.left >= 1);
     CHECK(e.left <= 5);
     CHECK(e.right >= 90);
@@ -95,7 +86,7 @@ TEST_CASE("what is in front hides what is behind, from either side") {
     Model model =
         test::modelOf({{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}, {-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}},
                       {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}});
-    const Welded w = welded(model);
+    const Welded w = weldedWithTopology(model);
     const std::vector<glm::vec3> colors = {kRed, kRed, kBlue, kBlue};
     PictureOptions options = small();
     options.viewFrom = {0, 0, 1};
@@ -110,7 +101,7 @@ TEST_CASE("what is in front hides what is behind, from either side") {
 }
 
 TEST_CASE("lines show on the surface and hide behind it") {
-    const Welded w = welded(test::cube(2));
+    const Welded w = weldedWithTopology(test::cube(2));
     PictureOptions options = small();
     options.viewFrom = {0, 0, 1};
     options.lineWidth = 3;
@@ -125,7 +116,7 @@ TEST_CASE("lines show on the surface and hide behind it") {
 TEST_CASE("the background is as asked, and edges are softened") {
     PictureOptions options = small();
     options.background = glm::vec3(1);
-    const Image image = draw(welded(test::sphere(12)), glm::vec3(0.02f), options);
+    const Image image = draw(weldedWithTopology(test::sphere(12)), glm::vec3(0.02f), options);
     CHECK(at(image, 0, 0) == glm::u8vec4(255));
     size_t between = 0;
     for (const glm::u8vec4& p : image.pixels) between += p.g > 130 && p.g < 240;
@@ -136,13 +127,13 @@ TEST_CASE("the background is as asked, and edges are softened") {
 TEST_CASE("a smooth body is shaded without its facets, a cube with its edges") {
     PictureOptions options = small();
     options.viewFrom = {1, 1, 1};
-    const Image cube = draw(welded(test::cube(4)), glm::vec3(0.6f), options);
+    const Image cube = draw(weldedWithTopology(test::cube(4)), glm::vec3(0.6f), options);
     std::map<uint8_t, size_t> count; // three sides: few values apart from softened edges
     for (const glm::u8vec4& p : cube.pixels) ++count[p.g];
     size_t large = 0;
     for (const auto& [value, n] : count) large += n > 200;
     CHECK(large == 4); // and the background
-    const Image sphere = draw(welded(test::sphere(8)), glm::vec3(0.6f), options);
+    const Image sphere = draw(weldedWithTopology(test::sphere(8)), glm::vec3(0.6f), options);
     int steepest = 0; // along the middle row, well inside
     for (uint32_t x = 36; x < 60; ++x) {
         steepest = std::max(steepest, std::abs(int(at(sphere, x, 32).g) - int(at(sphere, x + 1, 32).g)));
@@ -156,7 +147,7 @@ TEST_CASE("nothing to draw is an empty picture, a speck is no failure") {
     none.edgeFaceOffsets = none.vertexFaceOffsets = {0};
     const Image image = drawPicture(empty, none, {}, {}, small());
     CHECK(image.pixels == std::vector<glm::u8vec4>(size_t(96) * 64, at(image, 0, 0)));
-    const Welded line = welded(test::modelOf({{0, 0, 0}, {0, 0, 1}, {0, 0, 2}}, {{0, 1, 2}}));
+    const Welded line = weldedWithTopology(test::modelOf({{0, 0, 0}, {0, 0, 1}, {0, 0, 2}}, {{0, 1, 2}}));
     PictureOptions along = small();
     along.viewFrom = along.up = {0, 0, 1};
     CHECK(draw(line, kRed, along).pixels.size() == size_t(96) * 64);
@@ -209,7 +200,7 @@ TEST_CASE("sRGB encoding is its standard's to a step of 8 bits, and decoding its
 TEST_CASE("a PNG file has the picture's size and a signature; a folder that is not there is refused") {
     const std::filesystem::path dir = std::filesystem::path(XGC_BINARY_DIR) / "test_picture";
     std::filesystem::create_directories(dir);
-    const Image image = draw(welded(test::sphere(6)), kBlue, small());
+    const Image image = draw(weldedWithTopology(test::sphere(6)), kBlue, small());
     REQUIRE(writePng(image, dir / "sphere.png").ok());
     std::ifstream file(dir / "sphere.png", std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(file), {}};

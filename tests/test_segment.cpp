@@ -1,4 +1,5 @@
 #include "meshes/off.h"
+#include "meshes/welded.h"
 
 #include <xgc/bake/segment.h>
 
@@ -33,19 +34,8 @@ Mesh twoSquares() {
     return mesh;
 }
 
-struct Welded {
-    Mesh mesh;
-    Topology topology;
-};
-
-Welded welded(const Model& model) {
-    Welded w;
-    WeldReport report;
-    const Status status = weld(model, {}, w.mesh, report);
-    REQUIRE_MESSAGE(status.ok(), status.message);
-    w.topology = buildTopology(w.mesh);
-    return w;
-}
+using test::Welded;
+using test::weldedWithTopology;
 
 Segmentation thesisParts(const Welded& w, const ThesisSegmentOptions& options = {},
                          ThesisSegmentTrace* trace = nullptr) {
@@ -249,14 +239,14 @@ TEST_CASE(".seg files: written, read back, and refused by name where they are no
 }
 
 TEST_CASE("a wholly convex body is one part") {
-    CHECK(thesisParts(welded(test::cube(1))).partCount() == 1);
-    CHECK(thesisParts(welded(test::cube(5))).partCount() == 1);
-    CHECK(thesisParts(welded(test::sphere(12))).partCount() == 1);
-    CHECK(thesisParts(welded(test::grid(6))).partCount() == 1);
+    CHECK(thesisParts(weldedWithTopology(test::cube(1))).partCount() == 1);
+    CHECK(thesisParts(weldedWithTopology(test::cube(5))).partCount() == 1);
+    CHECK(thesisParts(weldedWithTopology(test::sphere(12))).partCount() == 1);
+    CHECK(thesisParts(weldedWithTopology(test::grid(6))).partCount() == 1);
 }
 
 TEST_CASE("a cube on a plate is two parts, cut along the concave edges") {
-    const Welded w = welded(cells(cubeOnPlate()));
+    const Welded w = weldedWithTopology(cells(cubeOnPlate()));
     const Segmentation parts = thesisParts(w);
     CHECK(parts.partNames == std::vector<std::string>{"part-0", "part-1"});
     checkDenseAndOrdered(w.mesh, parts);
@@ -268,11 +258,11 @@ TEST_CASE("a cube on a plate is two parts, cut along the concave edges") {
 }
 
 TEST_CASE("an L stays one part: its flat sides lead round the concave edge, as at the thesis's T") {
-    CHECK(thesisParts(welded(cells({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}))).partCount() == 1);
+    CHECK(thesisParts(weldedWithTopology(cells({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}))).partCount() == 1);
 }
 
 TEST_CASE("a dumbbell is two balls and a rod, or as many parts as are asked for") {
-    const Welded w = welded(dumbbell());
+    const Welded w = weldedWithTopology(dumbbell());
     ThesisSegmentTrace trace;
     const Segmentation parts = thesisParts(w, {}, &trace);
     CHECK(trace.equationCount == 3);
@@ -316,7 +306,7 @@ TEST_CASE("triangles fall into the ten types of definition 1") {
         seen.insert(type);
         ++wanted[type];
         ThesisSegmentTrace trace;
-        thesisParts(welded(test::modelOf(p, t)), {}, &trace);
+        thesisParts(weldedWithTopology(test::modelOf(p, t)), {}, &trace);
         CHECK(trace.triangleTypes == wanted);
     }
     CHECK(seen.size() == 10);
@@ -324,8 +314,8 @@ TEST_CASE("triangles fall into the ten types of definition 1") {
 
 TEST_CASE("the flat tolerance decides what counts as flat") {
     const auto kindAt = [](float height, float tolerance) {
-        const Welded w =
-            welded(test::modelOf({{0, 0, 0}, {1, 0, 0}, {0.5f, 1, 0}, {0.5f, -1, height}}, {{0, 1, 2}, {1, 0, 3}}));
+        const Welded w = weldedWithTopology(
+            test::modelOf({{0, 0, 0}, {1, 0, 0}, {0.5f, 1, 0}, {0.5f, -1, height}}, {{0, 1, 2}, {1, 0, 3}}));
         ThesisSegmentOptions options;
         options.flatTolerance = tolerance;
         ThesisSegmentTrace trace;
@@ -340,7 +330,7 @@ TEST_CASE("the flat tolerance decides what counts as flat") {
 }
 
 TEST_CASE("a rough sphere is noisy, is smoothed, and is merged by its own areas") {
-    const Welded w = welded(roughSphere(0.01f));
+    const Welded w = weldedWithTopology(roughSphere(0.01f));
     ThesisSegmentTrace trace;
     ThesisSegmentOptions options;
     const Segmentation parts = thesisParts(w, options, &trace);
@@ -375,7 +365,7 @@ TEST_CASE("a rough sphere is noisy, is smoothed, and is merged by its own areas"
 TEST_CASE("the histogram sums to 100 percent") {
     for (const Model& model : {dumbbell(), roughSphere(0.02f), cells(cubeOnPlate()), test::cube(1)}) {
         ThesisSegmentTrace trace;
-        thesisParts(welded(model), {}, &trace);
+        thesisParts(weldedWithTopology(model), {}, &trace);
         double first = 0, last = 0;
         for (int i = 0; i < 100; ++i) {
             first += trace.firstHistogram[i];
@@ -388,28 +378,28 @@ TEST_CASE("the histogram sums to 100 percent") {
 
 TEST_CASE("winding does not matter: inside out, or face by face") {
     for (const Model& model : {dumbbell(), cells(cubeOnPlate())}) {
-        const std::vector<uint32_t> wanted = thesisParts(welded(model)).facePart;
+        const std::vector<uint32_t> wanted = thesisParts(weldedWithTopology(model)).facePart;
         Model insideOut = model, mixed = model;
         for (glm::uvec3& t : insideOut.triangles) std::swap(t.y, t.z);
         for (size_t i = 0; i < mixed.triangles.size(); i += 1 + i % 3)
             std::swap(mixed.triangles[i].y, mixed.triangles[i].z);
-        CHECK(thesisParts(welded(insideOut)).facePart == wanted);
-        CHECK(thesisParts(welded(mixed)).facePart == wanted);
+        CHECK(thesisParts(weldedWithTopology(insideOut)).facePart == wanted);
+        CHECK(thesisParts(weldedWithTopology(mixed)).facePart == wanted);
     }
 }
 
 TEST_CASE("a mesh scaled by a power of two has the same parts") {
-    const std::vector<uint32_t> wanted = thesisParts(welded(roughSphere(0.01f))).facePart;
+    const std::vector<uint32_t> wanted = thesisParts(weldedWithTopology(roughSphere(0.01f))).facePart;
     for (const float scale : {1.0f / (1 << 20), 0.5f, 4096.0f}) {
         Model model = roughSphere(0.01f);
         for (glm::vec3& p : model.positions) p *= scale;
-        CHECK(thesisParts(welded(model)).facePart == wanted);
+        CHECK(thesisParts(weldedWithTopology(model)).facePart == wanted);
     }
-    CHECK(thesisParts(welded(roughSphere(0.01f))).facePart == wanted);
+    CHECK(thesisParts(weldedWithTopology(roughSphere(0.01f))).facePart == wanted);
 }
 
 TEST_CASE("edges of more than two faces are closed, and regions still meet there") {
-    const Welded w = welded(cells({{0, 0, 0}, {1, 1, 0}})); // two cubes with one edge in common
+    const Welded w = weldedWithTopology(cells({{0, 0, 0}, {1, 1, 0}})); // two cubes with one edge in common
     CHECK(thesisParts(w).partCount() == 2);
     ThesisSegmentOptions options;
     options.partsCount = 1;
@@ -417,7 +407,7 @@ TEST_CASE("edges of more than two faces are closed, and regions still meet there
 }
 
 TEST_CASE("the report holds what the trace saw") {
-    const Welded w = welded(roughSphere(0.01f));
+    const Welded w = weldedWithTopology(roughSphere(0.01f));
     ThesisSegmentTrace trace;
     const Segmentation parts = thesisParts(w, {}, &trace);
     const std::string json = thesisReportJson("rough \"sphere\".off", w.mesh, {}, trace, parts);
@@ -431,7 +421,7 @@ TEST_CASE("the report holds what the trace saw") {
 }
 
 TEST_CASE("islands have no one to merge with and stay") {
-    const Welded w = welded(cells({{0, 0, 0}, {3, 0, 0}, {6, 0, 0}}));
+    const Welded w = weldedWithTopology(cells({{0, 0, 0}, {3, 0, 0}, {6, 0, 0}}));
     ThesisSegmentOptions options;
     options.partsCount = 1;
     CHECK(thesisParts(w, options).partCount() == 3);
@@ -442,7 +432,7 @@ TEST_CASE("islands have no one to merge with and stay") {
 TEST_CASE("a face of no area neither opens a concave edge nor makes a part") {
     Model model = cells(cubeOnPlate());
     // One of the plate's faces at the cube's foot is split at the middle of that edge; a needle fills the crack.
-    const Welded before = welded(model);
+    const Welded before = weldedWithTopology(model);
     uint32_t split = 0;
     glm::uvec3 turned(0);
     for (uint32_t f = 0; f < model.triangles.size(); ++f) {
@@ -464,7 +454,7 @@ TEST_CASE("a face of no area neither opens a concave edge nor makes a part") {
     model.triangles.emplace_back(middle, turned.y, turned.z);
     model.triangles.emplace_back(turned.x, turned.y, middle);
     model = test::modelOf(model.positions, model.triangles);
-    const Welded w = welded(model);
+    const Welded w = weldedWithTopology(model);
     CHECK(w.mesh.faceCount() == before.mesh.faceCount() + 2);
     ThesisSegmentOptions options;
     options.merge = false;
@@ -474,7 +464,8 @@ TEST_CASE("a face of no area neither opens a concave edge nor makes a part") {
 }
 
 TEST_CASE("a mesh without any area has parts all the same") {
-    const Welded w = welded(test::modelOf({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, {{0, 1, 2}, {1, 3, 2}}));
+    const Welded w =
+        weldedWithTopology(test::modelOf({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, {{0, 1, 2}, {1, 3, 2}}));
     CHECK(thesisParts(w).facePart == std::vector<uint32_t>{0, 0});
 }
 
@@ -493,7 +484,7 @@ TEST_CASE("real models have as many parts as a person might see") {
         CAPTURE(c.model);
         const Model model = test::readOff(data / "psb/off" / fmt::format("{}.off", c.model));
         REQUIRE_FALSE(model.triangles.empty());
-        const Welded w = welded(model);
+        const Welded w = weldedWithTopology(model);
         ThesisSegmentTrace trace;
         const Segmentation parts = thesisParts(w, {}, &trace);
         CHECK(parts.partCount() >= c.least);

@@ -1,4 +1,5 @@
 #include "cells.h"
+#include "disjoint_sets.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,27 +34,6 @@ glm::ivec3 cubeOf(const glm::vec3& p, float inverseSpacing) {
     return glm::ivec3(glm::floor(p * inverseSpacing));
 }
 
-/// Sets of triangles; a set goes by its lowest member.
-class Sets {
-public:
-    explicit Sets(uint32_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-    uint32_t find(uint32_t i) {
-        while (parent_[i] != i) {
-            parent_[i] = parent_[parent_[i]];
-            i = parent_[i];
-        }
-        return i;
-    }
-    void join(uint32_t i, uint32_t j) {
-        i = find(i);
-        j = find(j);
-        if (i != j) parent_[std::max(i, j)] = std::min(i, j);
-    }
-
-private:
-    std::vector<uint32_t> parent_;
-};
-
 float edgeLength(const Piece& piece, uint32_t t, int k) {
     const glm::uvec3 c = piece.triangles[t];
     return glm::length(piece.positions[c[(k + 1) % 3]] - piece.positions[c[k]]);
@@ -70,8 +50,8 @@ void forEachLink(const Piece& piece, const Visit& visit) {
     }
 }
 
-/// Sets under `leastArea` join the set across their longest edge.
-void joinSmallSets(const Piece& piece, std::span<const TriangleShape> shapes, float leastArea, Sets& sets) {
+/// DisjointSets under `leastArea` join the set across their longest edge.
+void joinSmallSets(const Piece& piece, std::span<const TriangleShape> shapes, float leastArea, DisjointSets& sets) {
     std::vector<float> area(shapes.size(), 0.0f), longest(shapes.size(), 0.0f);
     std::vector<uint32_t> across(shapes.size(), kNone);
     for (uint32_t t = 0; t < piece.triangleCount(); ++t) area[sets.find(t)] += shapes[t].area;
@@ -100,7 +80,7 @@ std::vector<uint32_t> joinTriangles(const Piece& piece, std::span<const Triangle
         cube[t] = cubeOf(shapes[t].center, 1 / spacing);
         normal[t] = shapes[t].area > 0 ? shapes[t].normal / shapes[t].area : glm::vec3(0);
     }
-    Sets sets(piece.triangleCount());
+    DisjointSets sets(piece.triangleCount());
     forEachLink(piece, [&](uint32_t t, uint32_t g, int) {
         if (cube[t] == cube[g] && glm::dot(normal[t], normal[g]) > kFacingAlike) sets.join(t, g);
     });

@@ -1,8 +1,8 @@
 #include "contour_polish.h"
+#include "disjoint_sets.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace xgc::bake {
 
@@ -121,30 +121,16 @@ private:
         const uint32_t cell = cellOf(triangle);
         return isMixed(cell) ? graph_.size() + triangle : cell;
     }
-    uint32_t find(uint32_t node) {
-        while (set_[node] != node) {
-            set_[node] = set_[set_[node]];
-            node = set_[node];
-        }
-        return node;
-    }
-    void join(uint32_t a, uint32_t b) {
-        a = find(a);
-        b = find(b);
-        set_[std::max(a, b)] = std::min(a, b);
-    }
-
     void findSets() {
-        set_.resize(graph_.size() + component_.face.size());
-        std::iota(set_.begin(), set_.end(), 0u);
+        sets_ = DisjointSets(graph_.size() + component_.face.size());
         for (const CellGraph::Link& link : graph_.links) {
             const bool areWhole = !isMixed(link.a) && !isMixed(link.b);
-            if (areWhole && cellLabel_[link.a] == cellLabel_[link.b]) join(link.a, link.b);
+            if (areWhole && cellLabel_[link.a] == cellLabel_[link.b]) sets_.join(link.a, link.b);
         }
         for (const uint32_t t : band_) {
             for (int k = 0; k < 3; ++k) {
                 const uint32_t g = linked_.neighbours[faceOf(t)][k];
-                if (g != kNone && labels_[g] == labels_[faceOf(t)]) join(nodeOf(t), nodeOf(scratch_[g]));
+                if (g != kNone && labels_[g] == labels_[faceOf(t)]) sets_.join(nodeOf(t), nodeOf(scratch_[g]));
             }
         }
     }
@@ -153,17 +139,17 @@ private:
     /// most. False where there were none.
     bool joinLooseFaces() {
         findSets();
-        std::vector<float> area(set_.size(), 0.0f);
+        std::vector<float> area(graph_.size() + component_.face.size(), 0.0f);
         std::vector<std::pair<uint32_t, uint32_t>> sets; // label, set
         for (uint32_t c = 0; c < graph_.size(); ++c) {
             if (isMixed(c)) continue;
-            area[find(c)] += graph_.areas[c];
-            if (find(c) == c) sets.emplace_back(cellLabel_[c], c);
+            area[sets_.find(c)] += graph_.areas[c];
+            if (sets_.find(c) == c) sets.emplace_back(cellLabel_[c], c);
         }
         for (const uint32_t t : band_) { // a share of the cell's area each: good enough to tell which set is largest
             const uint32_t node = nodeOf(t);
-            area[find(node)] += 1e-9f;
-            if (find(node) == node) sets.emplace_back(labels_[faceOf(t)], node);
+            area[sets_.find(node)] += 1e-9f;
+            if (sets_.find(node) == node) sets.emplace_back(labels_[faceOf(t)], node);
         }
         std::sort(sets.begin(), sets.end(), [&](const auto& a, const auto& b) {
             if (a.first != b.first) return a.first < b.first;
@@ -180,11 +166,11 @@ private:
 
     /// `loose`: sets, rising.
     void giveAway(std::span<const uint32_t> loose) {
-        std::vector<uint8_t> isLoose(set_.size(), 0);
+        std::vector<uint8_t> isLoose(graph_.size() + component_.face.size(), 0);
         for (const uint32_t set : loose) isLoose[set] = 1;
         std::vector<std::pair<uint32_t, uint32_t>> members; // set, face
         for (const uint32_t t : band_) {
-            const uint32_t set = find(nodeOf(t));
+            const uint32_t set = sets_.find(nodeOf(t));
             if (isLoose[set]) members.emplace_back(set, faceOf(t));
         }
         std::stable_sort(members.begin(), members.end(),
@@ -234,7 +220,7 @@ private:
     std::vector<uint32_t> cellLabel_;
     std::vector<uint32_t> aroundOffsets_, around_; ///< per cell; none where one label is all around
     std::vector<uint32_t> band_;                   ///< triangles, rising
-    std::vector<uint32_t> set_;                    ///< per node: another one of its set, or itself
+    DisjointSets sets_{0};                         ///< of nodes
     std::vector<Vote> votes_;
 };
 

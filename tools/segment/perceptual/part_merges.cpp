@@ -1,7 +1,7 @@
 #include "part_merges.h"
+#include "disjoint_sets.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace xgc::bake {
 
@@ -28,25 +28,12 @@ CellRegions regionsOf(const Component& component, const Segmentation& parts) {
     return regions;
 }
 
-/// Parts that have joined; a set goes by its lowest.
-class JoinedParts {
-public:
-    explicit JoinedParts(uint32_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-    uint32_t find(uint32_t p) const {
-        while (parent_[p] != p) p = parent_[p];
-        return p;
-    }
-    void join(uint32_t p, uint32_t q, double cost, std::vector<PartMerge>& merges) {
-        p = find(p);
-        q = find(q);
-        if (p == q) return;
-        parent_[std::max(p, q)] = std::min(p, q);
-        merges.push_back({std::min(p, q), std::max(p, q), float(cost)});
-    }
-
-private:
-    std::vector<uint32_t> parent_;
-};
+/// Joins the parts that p and q are in by now, if they are two.
+void joinParts(uint32_t p, uint32_t q, double cost, DisjointSets& joined, std::vector<PartMerge>& merges) {
+    p = joined.find(p);
+    q = joined.find(q);
+    if (joined.join(p, q)) merges.push_back({std::min(p, q), std::max(p, q), float(cost)});
+}
 
 /// Per part: the one it shares most border with, or kNone.
 std::vector<uint32_t> closestNeighbours(const Mesh& mesh, const Topology& topology, const Segmentation& parts) {
@@ -111,12 +98,12 @@ std::vector<PartMerge> findPartMerges(const AnalysedMesh& at, const Segmentation
         return a.component != b.component ? a.component < b.component : a.order < b.order;
     });
     std::vector<PartMerge> merges;
-    JoinedParts joined(parts.partCount());
+    DisjointSets joined(parts.partCount());
     const std::vector<uint32_t> closest = closestNeighbours(at.mesh, at.topology, parts);
     for (uint32_t p = 0; p < parts.partCount(); ++p) {
-        if (!hasCells[p] && closest[p] != kNone) joined.join(p, closest[p], 0, merges);
+        if (!hasCells[p] && closest[p] != kNone) joinParts(p, closest[p], 0, joined, merges);
     }
-    for (const Step& step : steps) joined.join(step.p, step.q, step.cost, merges);
+    for (const Step& step : steps) joinParts(step.p, step.q, step.cost, joined, merges);
     return merges;
 }
 
