@@ -54,7 +54,7 @@ Status outOfCapacity(const char* message, uint64_t element) {
 
 } // namespace
 
-struct DrawList::Impl {
+struct DrawList::Impl : Allocated<DrawList::Impl> {
     DrawListConfig config;
 
     FixedArray<Instance> instances;

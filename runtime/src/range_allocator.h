@@ -1,34 +1,14 @@
 #pragma once
 
+#include "memory.h"
+
 #include <xgc/format.h>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 
 namespace xgc {
-
-/// An array that is allocated once and never grows; without exceptions.
-template <typename T>
-class FixedArray {
-public:
-    /// Value-initialised elements; false where there is no memory.
-    [[nodiscard]] bool allocate(size_t count) {
-        data_.reset(new (std::nothrow) T[count]());
-        size_ = data_ ? count : 0;
-        return data_ != nullptr;
-    }
-    T& operator[](size_t i) { return data_[i]; }
-    const T& operator[](size_t i) const { return data_[i]; }
-    T* data() { return data_.get(); }
-    const T* data() const { return data_.get(); }
-    size_t size() const { return size_; }
-
-private:
-    std::unique_ptr<T[]> data_;
-    size_t size_ = 0;
-};
 
 /// Hands out ranges of 0..size: offsets only, no memory behind them. A range is named by its handle. Free ranges
 /// are merged with their free neighbours at once and kept in bins by size (eight a power of two), so both calls
