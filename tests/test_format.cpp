@@ -325,6 +325,8 @@ TEST_CASE("tables: each rule is enforced") {
     expectCorrupt("neighbours", record<uint32_t>(SectionId::partNeighbours, 0, [](auto& n) { n = 3; }));
     expectCorrupt("contour", record<float>(SectionId::contours, 1, [](auto& c) { c = kNaN; }));
     expectCorrupt("contour", record<float>(SectionId::contours, 0, [](auto& c) { c = -1; }));
+    expectCorrupt("counts of triangles", record<uint32_t>(SectionId::patchFaceCounts, 0, [](auto& c) { ++c; }));
+    expectCorrupt("counts of triangles", record<uint32_t>(SectionId::patchFaceCounts, 2, [](auto& c) { c = kNone; }));
     const auto shape = [](auto change) { return record<PartShape>(SectionId::partShapes, 1, change); };
     expectCorrupt("box that is not finite", shape([](auto& s) { s.boxCenter[2] = kNaN; }));
     expectCorrupt("box that is not finite", shape([](auto& s) { s.boxAxes[2][1] = kNaN; }));
@@ -356,7 +358,7 @@ TEST_CASE("tables: each rule is enforced") {
             test::store(b, at, s);
         };
     };
-    expectCorrupt("without partShapes", section(SectionId::partShapes, [](auto& s) { s.id = SectionId(1000); }));
+    expectCorrupt("without partShapes", section(SectionId::partShapes, [](auto& s) { s.id = SectionId(70); }));
     expectCorrupt("material with", record<MaterialRecord>(SectionId::materials, 0, [](auto& m) { m.metallic = kNaN; }));
     expectCorrupt("before its parent", record<NodeRecord>(SectionId::nodes, 1, [](auto& n) { n.parent = 1; }));
     const auto page = [](auto change) { return record<PageRecord>(SectionId::pages, 0, change); };
@@ -439,7 +441,8 @@ TEST_CASE("sections and streams of later versions are skipped") {
     const std::pair<SectionId, uint32_t> later[] = {{SectionId::mergeTree, 63},
                                                     {SectionId::contours, 68},
                                                     {SectionId::provenance, 1000},
-                                                    {SectionId::partShapes, 1001}};
+                                                    {SectionId::partShapes, 1001},
+                                                    {SectionId::patchFaceCounts, 1002}};
     for (const auto& [id, unknown] : later) {
         const size_t at = sectionAt(b, id);
         auto s = test::load<SectionRecord>(b, at);
@@ -464,6 +467,7 @@ TEST_CASE("sections and streams of later versions are skipped") {
     REQUIRE_MESSAGE(status.ok(), status.message);
     CHECK(view.provenance.empty());
     CHECK(view.partShapes.empty());
+    CHECK(view.patchFaceCounts.empty());
     CHECK(view.contoursOf(1).empty());
     CHECK(view.merges.empty());
     CHECK(view.birthLevels.empty());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 // Arrays that are cut into runs (domains into patches, parts into patches, ...) must be cut without gap or overlap
 // and to the end: a running sum is then all that it takes to know that every range is valid.
@@ -258,6 +259,19 @@ Status checkMerges(const AssetView& v) {
     return {};
 }
 
+Status checkFaceCounts(const AssetView& v) {
+    const uint32_t levelCount = v.record->levelCount;
+    if (v.patchFaceCounts.empty()) return {};
+    if (v.patchFaceCounts.size() != uint64_t(v.record->patchCount) * levelCount)
+        return corrupt("section patchFaceCounts has another count than patches times levels");
+    for (uint32_t p = 0; p < v.record->patchCount; ++p) {
+        const uint32_t* counts = v.patchFaceCounts.data() + size_t(p) * levelCount;
+        const bool falling = std::is_sorted(counts, counts + levelCount, std::greater<>());
+        if (counts[0] != v.patches[p].faceCount || !falling) return corrupt("patch with wrong counts of triangles", p);
+    }
+    return {};
+}
+
 Status checkContours(const AssetView& v) {
     if (!v.contours.empty() && v.contours.size() != v.partNeighbours.size())
         return corrupt("section contours has another count than partNeighbours");
@@ -307,7 +321,7 @@ Status checkPageTable(const AssetView& v) {
 Status checkTables(const AssetView& view) {
     for (Status (*check)(const AssetView&) :
          {checkCounts, checkLevels, checkDomains, checkRanges, checkPatches, checkErrors, checkParts, checkPartShapes,
-          checkMerges, checkContours, checkMaterials, checkNodes, checkPageTable}) {
+          checkMerges, checkContours, checkFaceCounts, checkMaterials, checkNodes, checkPageTable}) {
         if (Status s = check(view); !s.ok()) return s;
     }
     return {};

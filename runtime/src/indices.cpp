@@ -55,6 +55,13 @@ ListedFaces listFor(const AssetView& asset, uint32_t patch, uint32_t least) {
     return found;
 }
 
+/// The finest level among the patch's own and those of its domains.
+uint32_t finestGroup(const AssetView& asset, uint32_t patch, Levels levels) {
+    uint32_t least = levels[patch];
+    for (const uint32_t domain : asset.domainsOf(patch)) least = std::min(least, domainLevel(asset, domain, levels));
+    return least;
+}
+
 /// What is known of a patch's domains once they are resolved.
 struct DomainStates {
     uint32_t slotCount = 0;
@@ -160,10 +167,17 @@ uint32_t domainLevel(const AssetView& asset, uint32_t domain, Levels levels) {
     return level;
 }
 
+uint32_t uniformTriangles(const AssetView& asset, uint32_t patch, uint32_t level) {
+    if (asset.patchFaceCounts.empty()) return listFor(asset, patch, level).count;
+    return asset.patchFaceCounts[size_t(patch) * asset.levelCount() + level];
+}
+
+uint32_t triangleBound(const AssetView& asset, uint32_t patch, Levels levels) {
+    return uniformTriangles(asset, patch, finestGroup(asset, patch, levels));
+}
+
 uint32_t indexCapacity(const AssetView& asset, uint32_t patch, Levels levels) {
-    uint32_t least = levels[patch];
-    for (const uint32_t domain : asset.domainsOf(patch)) least = std::min(least, domainLevel(asset, domain, levels));
-    return 3 * listFor(asset, patch, least).count;
+    return 3 * listFor(asset, patch, finestGroup(asset, patch, levels)).count;
 }
 
 uint32_t buildIndices(const AssetView& asset, uint32_t patch, Levels levels, std::span<uint32_t> scratch,

@@ -131,6 +131,7 @@ Status readSections(AssetView& view) {
     view.streams = reader.array<StreamRecord>(SectionId::streams);
     view.contours = reader.array<float>(SectionId::contours);
     view.partShapes = reader.array<PartShape>(SectionId::partShapes);
+    view.patchFaceCounts = reader.array<uint32_t>(SectionId::patchFaceCounts);
     view.merges = reader.array<MergeRecord>(SectionId::mergeTree);
     view.provenance = reader.text(SectionId::provenance);
     if (!reader.status().ok()) return reader.status();

@@ -19,4 +19,18 @@ uint32_t mergedParts(const AssetView& asset, uint32_t wanted, std::span<uint32_t
     return groups;
 }
 
+uint32_t findPart(const AssetView& asset, uint64_t stableId) {
+    for (uint32_t part = 0; part < asset.parts.size(); ++part) {
+        if (asset.parts[part].stableId == stableId) return part;
+    }
+    return format::kNone;
+}
+
+uint32_t findPart(const AssetView& asset, std::string_view name) {
+    for (uint32_t part = 0; part < asset.parts.size(); ++part) {
+        if (asset.text(asset.parts[part].name) == name) return part;
+    }
+    return format::kNone;
+}
+
 } // namespace xgc

@@ -1,5 +1,7 @@
 #include <xgc/select.h>
 
+#include "level_test.h"
+
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/trigonometric.hpp>
@@ -10,43 +12,8 @@
 #include <cmath>
 #include <limits>
 
-// With s = maxScale, r the radius of a patch's sphere and D the distance from the eye to its centre, both policies
-// ask whether the sphere is far enough away:
-//
-//   bands   t * R * s       <= D - r * s          <=>   s * (t * R + r)              <= D
-//   error   E * s * k / (D - r * s) <= pixels     <=>   s * (E * k + pixels * r)     <= pixels * D
-//
-// Both sides are squared, so that D needs no root. The eye inside the sphere (D < r * s) fails by itself.
-
 namespace xgc {
 namespace {
-
-struct Sphere {
-    glm::vec3 center;
-    float radius;
-};
-
-Sphere sphereOf(const format::PatchRecord& patch) {
-    return {{patch.sphereCenter[0], patch.sphereCenter[1], patch.sphereCenter[2]}, patch.sphereRadius};
-}
-
-/// Squared distance from the eye to a point of mesh space. The translation goes first: moving eye and asset
-/// together changes nothing as long as their difference is exact.
-float distanceSquared(const Placement& placement, const View& view, const glm::vec3& point) {
-    const glm::mat4x3& m = placement.toWorld;
-    const glm::vec3 offset = m[3] - view.eye;
-    const float x = m[0].x * point.x + m[1].x * point.y + m[2].x * point.z + offset.x;
-    const float y = m[0].y * point.x + m[1].y * point.y + m[2].y * point.z + offset.y;
-    const float z = m[0].z * point.x + m[1].z * point.y + m[2].z * point.z + offset.z;
-    return x * x + y * y + z * z;
-}
-
-/// reach <= away, by squares. Squares out of float's normal range decide for the finer level, so that neither
-/// overflow nor a GPU's flushing of subnormals can make the answer coarser.
-bool reaches(float reach, float awaySquared) {
-    const float reachSquared = reach * reach;
-    return reachSquared <= awaySquared && reachSquared <= FLT_MAX && awaySquared >= FLT_MIN;
-}
 
 void checkArguments([[maybe_unused]] const AssetView& asset, [[maybe_unused]] const Placement& placement,
                     [[maybe_unused]] const View& view, [[maybe_unused]] size_t levels) {
@@ -100,7 +67,7 @@ float roundedUp(double value) {
 View makeView(const glm::vec3& eye, float fovY, float viewportHeight) {
     assert(fovY > 0 && fovY < 3.1415926f);
     assert(viewportHeight > 0);
-    return {eye, viewportHeight / (2 * glm::tan(fovY / 2))};
+    return {.eye = eye, .pixelsPerUnit = viewportHeight / (2 * glm::tan(fovY / 2))};
 }
 
 Placement makePlacement(const glm::mat4& toWorld) {
@@ -117,15 +84,9 @@ void select(const AssetView& asset, const Placement& placement, const View& view
     const size_t coarsest = std::min<size_t>(policy.thresholds.size(), asset.levelCount() - 1);
     const float radius = asset.record->sphereRadius;
     for (uint32_t patch = 0; patch < asset.patchCount(); ++patch) {
-        const Sphere sphere = sphereOf(asset.patches[patch]);
-        const float away = distanceSquared(placement, view, sphere.center);
+        const Standing at = standing(placement, view, sphereOf(asset.patches[patch]));
         size_t level = 0;
-        for (; level < coarsest; ++level) {
-            const float threshold = policy.thresholds[level];
-            // The eye inside the sphere is at distance zero, which such a threshold does not exceed.
-            if (threshold <= 0) continue;
-            if (!reaches(placement.maxScale * (threshold * radius + sphere.radius), away)) break;
-        }
+        while (level < coarsest && bandReached(policy.thresholds[level], radius, at)) ++level;
         levels[patch] = uint8_t(level);
     }
 }
@@ -134,19 +95,19 @@ void select(const AssetView& asset, const Placement& placement, const View& view
             std::span<uint8_t> levels) {
     checkArguments(asset, placement, view, levels.size());
     assert(policy.pixels >= 0);
-    const float pixels = policy.pixels;
     for (uint32_t patch = 0; patch < asset.patchCount(); ++patch) {
-        const Sphere sphere = sphereOf(asset.patches[patch]);
-        const float away = pixels * pixels * distanceSquared(placement, view, sphere.center);
+        const Standing at = errorStanding(placement, view, sphereOf(asset.patches[patch]));
+        const auto fits = [&](uint32_t level) { return errorFits(asset.error(patch, level), view, policy.pixels, at); };
         uint32_t level = 0;
-        for (; level + 1 < asset.levelCount(); ++level) {
-            const float error = asset.error(patch, level + 1);
-            if (error == 0) continue;
-            const float reach = placement.maxScale * (error * view.pixelsPerUnit + pixels * sphere.radius);
-            if (!reaches(reach, away)) break;
-        }
+        while (level + 1 < asset.levelCount() && fits(level + 1)) ++level;
         levels[patch] = uint8_t(level);
     }
+}
+
+View makeOrthographicView(const glm::vec3& eye, const glm::vec3& forward, float height, float viewportHeight) {
+    assert(height > 0 && viewportHeight > 0);
+    return {
+        .eye = eye, .pixelsPerUnit = viewportHeight / height, .orthographic = true, .forward = glm::normalize(forward)};
 }
 
 float projectedError(const AssetView& asset, const Placement& placement, const View& view,
@@ -156,10 +117,15 @@ float projectedError(const AssetView& asset, const Placement& placement, const V
     for (uint32_t patch = 0; patch < asset.patchCount(); ++patch) {
         const double error = asset.error(patch, levels[patch]);
         if (error == 0) continue;
+        if (view.orthographic) {
+            largest = std::max(largest, error * double(placement.maxScale) * double(view.pixelsPerUnit));
+            continue;
+        }
         const Sphere sphere = sphereOf(asset.patches[patch]);
         const glm::dvec3 center = glm::dmat4x3(placement.toWorld) * glm::dvec4(sphere.center, 1);
         const double scale = placement.maxScale;
-        const double away = glm::length(center - glm::dvec3(view.eye)) - scale * double(sphere.radius);
+        const double bounds = glm::length(center - glm::dvec3(view.eye)) - scale * double(sphere.radius);
+        const double away = std::max(bounds, double(view.nearest));
         if (!(away > 0)) return std::numeric_limits<float>::infinity();
         largest = std::max(largest, error * scale * double(view.pixelsPerUnit) / away);
     }

@@ -134,6 +134,8 @@ const char* sectionName(SectionId id) {
         return "provenance";
     case SectionId::partShapes:
         return "partShapes";
+    case SectionId::patchFaceCounts:
+        return "patchFaceCounts";
     case SectionId::patchTiers:
         return "patchTiers";
     }

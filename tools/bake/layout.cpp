@@ -208,6 +208,7 @@ void addFaceLists(Layout& l) {
         lists.resize(lists.size() + l.listCount() - patch.size(), {kNever, 0});
     }
     l.file.section<FaceList>(SectionId::faceLists, lists);
+    l.file.section<uint32_t>(SectionId::patchFaceCounts, l.faces.patchFaceCounts);
 }
 
 void addDomains(Layout& l) {

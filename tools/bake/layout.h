@@ -36,6 +36,7 @@ struct Faces {
     std::vector<uint32_t> firstFace;              ///< per patch, and the end
     std::vector<std::vector<FacesOfLevel>> lists; ///< per patch, rising levels, the first of level 0
     std::vector<uint32_t> levelFaceCounts;        ///< triangles of the uniform states
+    std::vector<uint32_t> patchFaceCounts;        ///< patch * levelCount + level: likewise
 };
 Faces orderFaces(const Mesh& mesh, const Hierarchy& hierarchy);
 

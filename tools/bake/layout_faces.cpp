@@ -128,6 +128,7 @@ public:
         for (uint32_t level = 0; level < h_.levelCount; ++level) {
             uniform_.coarsen(triangles_, level);
             out_.levelFaceCounts[level] += uint32_t(triangles_.size());
+            out_.patchFaceCounts.push_back(uint32_t(triangles_.size()));
             const size_t listed = out_.lists[patch].back().triangles.size();
             if (triangles_.size() * kListRatio > listed || listed <= kSmallList) continue;
             if (out_.lists[patch].size() == format::kMaxFaceLists) continue;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <numeric>
@@ -81,6 +82,7 @@ struct State {
     std::vector<glm::uvec3> drawn; ///< by buildIndices
     std::vector<glm::uvec3> solid; ///< by definition, not degenerate
     std::vector<uint32_t> solidFace;
+    uint64_t miscounted = 0; ///< patches that draw more triangles than triangleBound, or other than uniformTriangles
 };
 
 class Checker {
@@ -93,6 +95,7 @@ public:
         const State state = makeState(index);
         ++report.states;
         report.faces += state.drawn.size();
+        report.miscounted += state.miscounted;
         checkDrawn(state, report);
         checkFlips(state, report);
         checkEdges(state, report);
@@ -145,9 +148,14 @@ private:
         state.levels = stateLevels(asset_, options_.seed, index);
         state.rep = representatives(asset_, expanded_, state.levels);
         std::vector<uint32_t> scratch(scratchCapacity(asset_)), out;
+        const bool uniform =
+            !asset_.patchFaceCounts.empty() &&
+            std::adjacent_find(state.levels.begin(), state.levels.end(), std::not_equal_to<>()) == state.levels.end();
         for (uint32_t p = 0; p < asset_.patchCount(); ++p) {
             out.resize(indexCapacity(asset_, p, state.levels));
             const uint32_t count = buildIndices(asset_, p, state.levels, scratch, out);
+            const uint32_t bound = triangleBound(asset_, p, state.levels);
+            state.miscounted += uniform ? count / 3 != bound : count / 3 > bound;
             for (uint32_t i = 0; i + 2 < count; i += 3) state.drawn.emplace_back(out[i], out[i + 1], out[i + 2]);
         }
         for (uint32_t f = 0; f < expanded_.faces.size(); ++f) {
@@ -273,6 +281,7 @@ void add(VerifyReport& sum, const VerifyReport& r) {
     sum.states += r.states;
     sum.faces += r.faces;
     sum.mismatches += r.mismatches;
+    sum.miscounted += r.miscounted;
     sum.degenerate += r.degenerate;
     sum.flips += r.flips;
     sum.oddEdges += r.oddEdges;
@@ -296,7 +305,7 @@ double medianTightness(const Checker& checker, uint32_t levelCount) {
 } // namespace
 
 bool VerifyReport::ok() const {
-    return mismatches == 0 && degenerate == 0 && flips == 0 && oddEdges == 0 && fallingErrors == 0 &&
+    return mismatches == 0 && miscounted == 0 && degenerate == 0 && flips == 0 && oddEdges == 0 && fallingErrors == 0 &&
            sourceMismatches == 0 && errorViolations * 10000 <= errorSamples && worstErrorRatio <= kPromiseMargin;
 }
 

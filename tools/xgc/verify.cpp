@@ -39,6 +39,7 @@ void printJson(const bake::VerifyReport& r) {
                                 {"fourUseEdges", r.fourUseEdges},
                                 {"mismatches", r.mismatches},
                                 {"degenerate", r.degenerate},
+                                {"miscounted", r.miscounted},
                                 {"fallingErrors", r.fallingErrors},
                                 {"errorSamples", r.errorSamples},
                                 {"errorViolations", r.errorViolations},
@@ -56,6 +57,7 @@ void printText(const std::string& file, const bake::VerifyReport& r) {
     fmt::print("  edges used four times       {} (harmless)\n", r.fourUseEdges);
     fmt::print("  degenerate triangles        {}\n", r.degenerate);
     fmt::print("  differing from definition   {}\n", r.mismatches);
+    fmt::print("  wrong counts of triangles   {}\n", r.miscounted);
     fmt::print("  errors that fall            {}\n", r.fallingErrors);
     fmt::print("  error samples               {}, beyond the promise {}, worst ratio {:.3f}\n", r.errorSamples,
                r.errorViolations, r.worstErrorRatio);

@@ -39,6 +39,7 @@ struct AssetView {
     std::span<const uint32_t> patchDomains;
     std::span<const uint32_t> patchSlots;        ///< beside patchDomains: first slot of the domain in the patch
     std::span<const float> patchErrors;          ///< patch * levelCount + level, mesh units
+    std::span<const uint32_t> patchFaceCounts;   ///< likewise: triangles in uniform states; may be empty
     std::span<const format::FaceList> faceLists; ///< patch * listCount + list
     std::span<const format::PartRecord> parts;
     std::span<const uint32_t> partNeighbours;

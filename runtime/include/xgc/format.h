@@ -44,9 +44,10 @@ enum class SectionId : uint32_t {
     morphTargets = 66,
     skins = 67,
     locks = 68,
-    provenance = 69, ///< UTF-8 JSON: settings, hash of the input, version of the tool (written by version 2)
-    patchTiers = 70, ///< per patch and tier after the first: its firsts and counts in that tier's pages
-    partShapes = 71, ///< PartShape[partCount]
+    provenance = 69,      ///< UTF-8 JSON: settings, hash of the input, version of the tool (written by version 2)
+    patchTiers = 70,      ///< per patch and tier after the first: its firsts and counts in that tier's pages
+    partShapes = 71,      ///< PartShape[partCount]
+    patchFaceCounts = 72, ///< u32[patchCount * levelCount]: triangles of a patch in the uniform state of a level
 };
 
 /// How a section or stream lies in the file (FORMAT.md, "Codecs"). `open` reads none alone; xgc::load decodes the

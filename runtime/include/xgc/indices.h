@@ -15,6 +15,14 @@ uint32_t domainLevel(const AssetView& asset, uint32_t domain, Levels levels);
 /// does not rise where no level falls.
 uint32_t indexCapacity(const AssetView& asset, uint32_t patch, Levels levels);
 
+/// Triangles of a patch with all patches at one level.
+uint32_t uniformTriangles(const AssetView& asset, uint32_t patch, uint32_t level);
+
+/// Most triangles of a patch in a state: those that it has with all patches at the finest level among its groups. Exact
+/// where all are at one level, and does not rise where no level falls. Files without patchFaceCounts give a coarser
+/// bound, and uniformTriangles the same.
+uint32_t triangleBound(const AssetView& asset, uint32_t patch, Levels levels);
+
 /// Scratch entries that `buildIndices` needs for any patch of the asset.
 inline uint32_t scratchCapacity(const AssetView& asset) {
     return asset.record->maxPatchSlots;

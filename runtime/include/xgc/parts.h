@@ -12,4 +12,8 @@ namespace xgc {
 /// 1; more than there are parts joins none. No allocation.
 uint32_t mergedParts(const AssetView& asset, uint32_t wanted, std::span<uint32_t> groupOfPart);
 
+/// The part of a stable id or of a name; format::kNone where the asset has none. Linear in the number of parts.
+uint32_t findPart(const AssetView& asset, uint64_t stableId);
+uint32_t findPart(const AssetView& asset, std::string_view name);
+
 } // namespace xgc

@@ -7,15 +7,22 @@
 
 namespace xgc {
 
-/// What selection needs of a camera: world space, perspective.
+/// What selection needs of a camera, in world space.
 struct View {
     glm::vec3 eye{0};
-    /// Pixels that one world unit covers at distance one: viewport height / (2 tan(fovY / 2)).
+    /// Pixels that one world unit covers at distance one (viewport height / (2 tan(fovY / 2))), or, where the view is
+    /// orthographic, at any.
     float pixelsPerUnit = 1;
+    float nearest = 0; ///< nothing nearer to the eye is drawn: the near plane's distance, or 0
+    bool orthographic = false;
+    glm::vec3 forward{0, 0, -1}; ///< unit, where it looks; read where it is orthographic
 };
 
 /// A perspective view. `fovY` in radians, `viewportHeight` in pixels.
 View makeView(const glm::vec3& eye, float fovY, float viewportHeight);
+
+/// An orthographic view, such as a shadow's: `height` of world units over `viewportHeight` pixels.
+View makeOrthographicView(const glm::vec3& eye, const glm::vec3& forward, float height, float viewportHeight);
 
 /// Where an asset stands. Affine, any scale but zero; `maxScale` bounds how much it lengthens a vector.
 struct Placement {
@@ -33,8 +40,9 @@ struct DistanceBands {
     std::span<const float> thresholds;
 };
 
-/// Level = the coarsest whose E projects to at most `pixels` at the nearest point of the patch's
-/// bounding sphere; where the eye is inside the sphere, and for 0 pixels, the coarsest whose E is zero.
+/// Level = the coarsest whose E projects to at most `pixels` at the nearest point of the patch's bounding sphere, or at
+/// View::nearest where the eye is nearer; for 0 pixels (and 0 for both), the coarsest whose E is zero. An orthographic
+/// view has one scale for all distances.
 struct ErrorPixels {
     float pixels = 1; ///< not negative
 };
@@ -52,7 +60,7 @@ void select(const AssetView& asset, const Placement& placement, const View& view
             std::span<uint8_t> levels);
 
 /// Largest projected error over the patches of a state, in pixels, in double precision; infinite where the eye is
-/// inside the bounds of a patch whose error is not zero.
+/// inside the bounds of a patch whose error is not zero and View::nearest is zero.
 float projectedError(const AssetView& asset, const Placement& placement, const View& view,
                      std::span<const uint8_t> levels);
 

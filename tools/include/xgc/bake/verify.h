@@ -26,6 +26,7 @@ struct VerifyReport {
     uint64_t flips = 0;         ///< triangles turned by more than 90 degrees against their face of level 0
     uint64_t oddEdges = 0;      ///< edges used an odd number of times that are no image of a border of level 0
     uint64_t fourUseEdges = 0;  ///< edges used four times or more, evenly: harmless to drawing
+    uint64_t miscounted = 0;    ///< patches that draw more triangles than the asset's counts say
     uint64_t fallingErrors = 0; ///< patches and levels where E falls
     uint64_t errorSamples = 0;
     uint64_t errorViolations = 0; ///< samples farther from the other surface than promised

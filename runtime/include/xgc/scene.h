@@ -1,0 +1,81 @@
+#pragma once
+
+#include <xgc/asset.h>
+#include <xgc/select.h>
+
+#include <memory>
+
+namespace xgc {
+
+/// How a part of an instance is steered. Applied after the policy: bias first, then the limits.
+struct PartControl {
+    float importance = 1;                   ///< times the part's own: 2 asks for half the error; positive
+    int32_t bias = 0;                       ///< levels added to the policy's choice: positive is coarser
+    uint32_t finest = 0;                    ///< no level below (finer than) this
+    uint32_t coarsest = format::kMaxLevels; ///< no level above this; wins over `finest`
+    bool hidden = false;                    ///< not drawn; its neighbours stay as they are
+
+    /// One level, whatever the view.
+    static PartControl pinned(uint32_t level) { return {.finest = level, .coarsest = level}; }
+};
+
+/// An asset, and where a renderer keeps what belongs to it.
+struct AssetDesc {
+    const AssetView* asset = nullptr; ///< outlives its id in the scene
+    int32_t vertexOffset = 0;         ///< of its row 0 in the renderer's vertex buffers
+    uint32_t firstMaterial = 0;       ///< its material 0 in the renderer's list
+};
+
+struct SceneConfig {
+    uint32_t assetCapacity = 64;
+    uint32_t instanceCapacity = 256;
+    uint32_t assetPatchCapacity = 65536; ///< sum of the patches of all assets
+    uint32_t patchCapacity = 65536;      ///< sum of the patches of all instances
+    uint32_t steeredPartCapacity = 4096; ///< sum of the parts of all instances with a PartControl
+};
+
+/// What stands where: assets, instances of them, and how their parts are steered. Knows no views: any number of
+/// Selections and DrawLists read one scene. An id is reused after its removal; views notice.
+///
+/// All memory is allocated by `create`. Changes and readers exclude each other; any number of threads may read. A call
+/// with an id of nothing is a programming error (asserted).
+class Scene {
+public:
+    Scene();
+    ~Scene();
+    Scene(Scene&&) noexcept;
+    Scene& operator=(Scene&&) noexcept;
+
+    Status create(const SceneConfig& config);
+    const SceneConfig& config() const;
+
+    /// On failure `id` is untouched, and the status' element is the value that would have sufficed.
+    Status addAsset(const AssetDesc& desc, uint32_t& id);
+    /// Its instances must be gone.
+    void removeAsset(uint32_t asset);
+    const AssetDesc& asset(uint32_t asset) const;
+
+    Status addInstance(uint32_t asset, const Placement& placement, uint32_t& id);
+    void removeInstance(uint32_t instance);
+    void setPlacement(uint32_t instance, const Placement& placement);
+    const Placement& placement(uint32_t instance) const;
+    uint32_t assetOf(uint32_t instance) const;
+
+    /// Steers a part of one instance. Fails only where steeredPartCapacity is taken.
+    Status setPart(uint32_t instance, uint32_t part, const PartControl& control);
+    PartControl part(uint32_t instance, uint32_t part) const;
+    /// Gives all parts of the instance back to the policies.
+    void clearParts(uint32_t instance);
+
+    /// Ids of instances lie below this; not all of them name one.
+    uint32_t instanceEnd() const;
+    bool hasInstance(uint32_t instance) const;
+
+    struct Impl; ///< private
+    const Impl& impl() const { return *impl_; }
+
+private:
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace xgc

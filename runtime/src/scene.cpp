@@ -1,0 +1,216 @@
+#include "scene.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace xgc {
+namespace {
+
+Status outOfCapacity(const char* message, uint64_t element) {
+    return {StatusCode::outOfCapacity, message, element};
+}
+
+PatchBounds boundsOf(const AssetView& asset, const format::PatchRecord& patch) {
+    PatchBounds out{};
+    out.sphere = {patch.sphereCenter[0], patch.sphereCenter[1], patch.sphereCenter[2], patch.sphereRadius};
+    out.coneAxis = {patch.coneAxis[0], patch.coneAxis[1], patch.coneAxis[2]};
+    const bool doubleSided = asset.materials[patch.material].flags & format::kDoubleSided;
+    const bool cone = patch.coneCosine > 0 && !doubleSided;
+    out.coneSine = cone ? std::sqrt(std::max(0.0f, 1 - patch.coneCosine * patch.coneCosine)) : 2;
+    out.coneLevel = patch.coneLevel;
+    out.part = patch.part;
+    out.importance = asset.parts[patch.part].importance;
+    return out;
+}
+
+} // namespace
+
+// Set-up ------------------------------------------------------------------------------------------------------------
+
+Scene::Scene() = default;
+Scene::~Scene() = default;
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+
+bool Scene::Impl::allocate() {
+    return assets.allocate(config.assetCapacity) &&
+           patchRanges.create(config.assetPatchCapacity, config.assetCapacity) &&
+           patches.allocate(config.assetPatchCapacity) &&
+           wholeErrors.allocate(size_t(config.assetCapacity) * format::kMaxLevels) &&
+           instances.allocate(config.instanceCapacity) &&
+           slotRanges.create(config.patchCapacity, config.instanceCapacity) &&
+           controlRanges.create(config.steeredPartCapacity, config.instanceCapacity) &&
+           controls.allocate(config.steeredPartCapacity);
+}
+
+Status Scene::create(const SceneConfig& config) {
+    if (config.assetCapacity == 0 || config.instanceCapacity == 0 || config.assetPatchCapacity == 0 ||
+        config.patchCapacity == 0) {
+        return {StatusCode::badArgument, "SceneConfig: every capacity but steeredPartCapacity must be at least 1", 0};
+    }
+    std::unique_ptr<Impl> impl(new (std::nothrow) Impl);
+    if (impl) impl->config = config;
+    if (!impl || !impl->allocate()) {
+        return outOfCapacity("SceneConfig: not enough memory for these capacities; lower them", 0);
+    }
+    for (uint32_t id = config.assetCapacity; id-- > 0;) {
+        impl->assets[id].nextFree = impl->freeAsset;
+        impl->freeAsset = id;
+    }
+    impl_ = std::move(impl);
+    return {};
+}
+
+const SceneConfig& Scene::config() const {
+    return impl_->config;
+}
+
+// Assets ------------------------------------------------------------------------------------------------------------
+
+const SceneAsset& Scene::Impl::assetAt(uint32_t id) const {
+    assert(id < assets.size() && assets[id].desc.asset && "no such asset");
+    return assets[id];
+}
+
+void Scene::Impl::fillTables(uint32_t id) {
+    const SceneAsset& stored = assets[id];
+    const AssetView& asset = *stored.desc.asset;
+    float* whole = wholeErrors.data() + size_t(id) * format::kMaxLevels;
+    std::fill_n(whole, asset.levelCount(), 0.0f);
+    for (uint32_t p = 0; p < asset.patchCount(); ++p) {
+        const PatchBounds bounds = boundsOf(asset, asset.patches[p]);
+        patches[stored.firstPatch + p] = bounds;
+        for (uint32_t level = 0; level < asset.levelCount(); ++level) {
+            whole[level] = std::max(whole[level], asset.error(p, level) * bounds.importance);
+        }
+    }
+}
+
+Status Scene::addAsset(const AssetDesc& desc, uint32_t& id) {
+    assert(impl_ && desc.asset && desc.asset->record);
+    Impl& d = *impl_;
+    const uint32_t patchCount = desc.asset->patchCount();
+    if (d.freeAsset == format::kNone) {
+        return outOfCapacity("too many assets: raise SceneConfig::assetCapacity", d.config.assetCapacity + 1ull);
+    }
+    const uint32_t range = patchCount ? d.patchRanges.allocate(patchCount) : format::kNone;
+    if (patchCount && range == format::kNone) {
+        return outOfCapacity("the assets have too many patches: raise SceneConfig::assetPatchCapacity", patchCount);
+    }
+    id = d.freeAsset;
+    d.freeAsset = d.assets[id].nextFree;
+    d.assets[id] = {.desc = desc, .patchRange = range};
+    d.assets[id].firstPatch = patchCount ? d.patchRanges.offset(range) : 0;
+    d.fillTables(id);
+    return {};
+}
+
+void Scene::removeAsset(uint32_t id) {
+    assert(impl_);
+    Impl& d = *impl_;
+    [[maybe_unused]] const SceneAsset& asset = d.assetAt(id);
+    assert(asset.instanceCount == 0 && "remove its instances first");
+    if (asset.patchRange != format::kNone) d.patchRanges.free(asset.patchRange);
+    d.assets[id] = {.nextFree = d.freeAsset};
+    d.freeAsset = id;
+}
+
+const AssetDesc& Scene::asset(uint32_t id) const {
+    return impl_->assetAt(id).desc;
+}
+
+// Instances ---------------------------------------------------------------------------------------------------------
+
+const SceneInstance& Scene::Impl::at(uint32_t id) const {
+    assert(id < instanceEnd && instances[id].generation % 2 == 1 && "no such instance");
+    return instances[id];
+}
+
+Status Scene::addInstance(uint32_t assetId, const Placement& placement, uint32_t& id) {
+    assert(impl_ && placement.maxScale > 0 && "use makePlacement");
+    Impl& d = *impl_;
+    const uint32_t patchCount = d.assetAt(assetId).desc.asset->patchCount();
+    if (d.freeInstance == format::kNone && d.instanceEnd == d.config.instanceCapacity) {
+        return outOfCapacity("too many instances: raise SceneConfig::instanceCapacity", d.instanceEnd + 1ull);
+    }
+    const uint32_t range = patchCount ? d.slotRanges.allocate(patchCount) : format::kNone;
+    if (patchCount && range == format::kNone) {
+        return outOfCapacity("the instances have too many patches: raise SceneConfig::patchCapacity", patchCount);
+    }
+    id = d.freeInstance != format::kNone ? d.freeInstance : d.instanceEnd++;
+    SceneInstance& instance = d.instances[id];
+    d.freeInstance = instance.nextFree;
+    instance = {.generation = instance.generation + 1, .asset = assetId, .placement = placement, .slotRange = range};
+    instance.firstSlot = patchCount ? d.slotRanges.offset(range) : 0;
+    ++d.assets[assetId].instanceCount;
+    return {};
+}
+
+void Scene::removeInstance(uint32_t id) {
+    assert(impl_);
+    Impl& d = *impl_;
+    SceneInstance& instance = d.at(id);
+    clearParts(id);
+    if (instance.slotRange != format::kNone) d.slotRanges.free(instance.slotRange);
+    --d.assets[instance.asset].instanceCount;
+    instance = {.generation = instance.generation + 1, .nextFree = d.freeInstance};
+    d.freeInstance = id;
+}
+
+void Scene::setPlacement(uint32_t id, const Placement& placement) {
+    assert(placement.maxScale > 0 && "use makePlacement");
+    impl_->at(id).placement = placement;
+}
+
+const Placement& Scene::placement(uint32_t id) const {
+    return impl_->at(id).placement;
+}
+
+uint32_t Scene::assetOf(uint32_t id) const {
+    return impl_->at(id).asset;
+}
+
+uint32_t Scene::instanceEnd() const {
+    return impl_->instanceEnd;
+}
+
+bool Scene::hasInstance(uint32_t id) const {
+    return id < impl_->instanceEnd && impl_->instances[id].generation % 2 == 1;
+}
+
+// Parts -------------------------------------------------------------------------------------------------------------
+
+Status Scene::setPart(uint32_t id, uint32_t part, const PartControl& control) {
+    assert(impl_);
+    Impl& d = *impl_;
+    SceneInstance& instance = d.at(id);
+    const auto partCount = uint32_t(d.assetAt(instance.asset).desc.asset->parts.size());
+    assert(part < partCount && "no such part");
+    assert(control.importance > 0 && std::isfinite(control.importance));
+    if (!instance.steered()) {
+        const uint32_t range = d.controlRanges.allocate(partCount);
+        if (range == format::kNone) {
+            return outOfCapacity("too many parts are steered: raise SceneConfig::steeredPartCapacity", partCount);
+        }
+        instance.controlRange = range;
+        instance.firstControl = d.controlRanges.offset(range);
+        std::fill_n(d.controls.data() + instance.firstControl, partCount, PartControl{});
+    }
+    d.controls[instance.firstControl + part] = control;
+    return {};
+}
+
+PartControl Scene::part(uint32_t id, uint32_t part) const {
+    const SceneInstance& instance = impl_->at(id);
+    assert(part < impl_->assetAt(instance.asset).desc.asset->parts.size() && "no such part");
+    return instance.steered() ? impl_->controls[instance.firstControl + part] : PartControl{};
+}
+
+void Scene::clearParts(uint32_t id) {
+    SceneInstance& instance = impl_->at(id);
+    if (instance.steered()) impl_->controlRanges.free(instance.controlRange);
+    instance.controlRange = format::kNone;
+}
+
+} // namespace xgc

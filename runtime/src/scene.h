@@ -1,0 +1,67 @@
+#pragma once
+
+#include "memory.h"
+#include "range_allocator.h"
+
+#include <xgc/scene.h>
+
+#include <glm/vec4.hpp>
+
+namespace xgc {
+
+/// What selection reads of a patch, without the rest of its record.
+struct PatchBounds {
+    glm::vec4 sphere; ///< mesh space
+    glm::vec3 coneAxis;
+    float coneSine;   ///< of the angle between the axis and its farthest normal; above 1: no cone
+    float importance; ///< of its part
+    uint32_t coneLevel;
+    uint32_t part;
+};
+
+struct SceneAsset {
+    AssetDesc desc{}; ///< no asset: the id is free
+    uint32_t patchRange = format::kNone;
+    uint32_t firstPatch = 0; ///< in Scene::Impl::patches
+    uint32_t instanceCount = 0;
+    uint32_t nextFree = format::kNone;
+};
+
+struct SceneInstance {
+    uint32_t generation = 0; ///< odd while it is there
+    uint32_t asset = 0;
+    Placement placement{};
+    uint32_t slotRange = format::kNone;
+    uint32_t firstSlot = 0; ///< of its patches, in the arrays of views
+    uint32_t controlRange = format::kNone;
+    uint32_t firstControl = 0; ///< in Scene::Impl::controls, where it has a range
+    uint32_t nextFree = format::kNone;
+
+    bool steered() const { return controlRange != format::kNone; }
+};
+
+struct Scene::Impl : Allocated<Scene::Impl> {
+    SceneConfig config;
+
+    FixedArray<SceneAsset> assets;
+    uint32_t freeAsset = format::kNone;
+    RangeAllocator patchRanges;
+    FixedArray<PatchBounds> patches;
+    FixedArray<float> wholeErrors; ///< asset * kMaxLevels + level: largest error times importance over its patches
+
+    FixedArray<SceneInstance> instances;
+    uint32_t instanceEnd = 0;
+    uint32_t freeInstance = format::kNone;
+    RangeAllocator slotRanges;
+
+    RangeAllocator controlRanges;
+    FixedArray<PartControl> controls;
+
+    bool allocate();
+    void fillTables(uint32_t asset);
+    const SceneAsset& assetAt(uint32_t id) const;
+    const SceneInstance& at(uint32_t id) const;
+    SceneInstance& at(uint32_t id) { return const_cast<SceneInstance&>(static_cast<const Impl*>(this)->at(id)); }
+};
+
+} // namespace xgc

@@ -1,0 +1,296 @@
+#include "selection.h"
+
+#include <cassert>
+#include <cmath>
+
+// An update looks at each instance once (without a budget), on any thread:
+//
+//   enter        forget what an earlier instance of this id left
+//   decideWhole  far and unsteered: one level for all of it; near: a level each patch; in the belt between: as it was
+//   cull         instance, then patches where it crosses the frustum
+//   choose       levels by the policy, then controls, reference and cones
+//
+// The belt. An instance turns whole at its outer edge and mixed at its inner one, and its mixed patches only refine
+// in it and a step around it: so going out and in again costs each patch one change of level, not one for itself
+// and one for the instance.
+//
+//   eye | mixed, free | mixed, only refining       | whole
+//       ------------- c(1-h) ------- c ----------- c/(1-h)^2 ---> distance, in radii; c: wholeBeyond, h: hysteresis
+//                       whole again here ^
+
+namespace xgc {
+namespace {
+
+bool beyond(float radii, const Standing& at) {
+    return reaches(radii * (at.scale * at.radius), at.distanceSquared);
+}
+
+} // namespace
+
+// Set-up ------------------------------------------------------------------------------------------------------------
+
+Selection::Selection() = default;
+Selection::~Selection() = default;
+Selection::Selection(Selection&&) noexcept = default;
+Selection& Selection::operator=(Selection&&) noexcept = default;
+
+bool Selection::Impl::allocate() {
+    return instances.allocate(config.instanceCapacity) && wanted.allocate(config.patchCapacity) &&
+           levels.allocate(config.patchCapacity) && visible.allocate(config.patchCapacity) &&
+           chunks.allocate((size_t(config.instanceCapacity) + kChunk - 1) / kChunk);
+}
+
+Status Selection::create(const SceneConfig& config) {
+    std::unique_ptr<Impl> impl(new (std::nothrow) Impl);
+    if (impl) impl->config = config;
+    if (!impl || !impl->allocate()) {
+        return {StatusCode::outOfCapacity, "SceneConfig: not enough memory for a selection of these capacities", 0};
+    }
+    impl_ = std::move(impl);
+    return {};
+}
+
+void Selection::Impl::begin(const Scene& of, const SelectionDesc& wish) {
+    scene = &of.impl();
+    desc = wish;
+    assert(scene->config.instanceCapacity <= config.instanceCapacity && "a selection for a smaller scene");
+    assert(scene->config.patchCapacity <= config.patchCapacity && "a selection for a smaller scene");
+    assert(desc.view.pixelsPerUnit >= 0 && desc.pixels >= 0 && desc.contributionPixels >= 0);
+    assert(desc.hysteresis >= 0 && desc.hysteresis < 1);
+    assert(std::is_sorted(desc.bands.begin(), desc.bands.end()));
+    assert(desc.triangleBudget == 0 || desc.policy == Policy::errorPixels);
+    assert((!desc.reference || desc.reference->impl_->scene == scene) && "update the reference first");
+    policy = levelPolicy(desc, desc.pixels);
+    stats = {.triangleBudget = desc.triangleBudget};
+}
+
+// One instance ------------------------------------------------------------------------------------------------------
+
+Selection::Impl::Subject Selection::Impl::subject(uint32_t id) {
+    const SceneInstance& instance = scene->instances[id];
+    const SceneAsset& stored = scene->assets[instance.asset];
+    const AssetView& asset = *stored.desc.asset;
+    const size_t count = asset.patchCount();
+    const auto slots = [&](FixedArray<uint8_t>& all) { return std::span(all.data() + instance.firstSlot, count); };
+    Subject s{.instance = instance,
+              .stored = stored,
+              .asset = asset,
+              .own = instances[id],
+              .patches = {scene->patches.data() + stored.firstPatch, count},
+              .controls = {},
+              .wanted = slots(wanted),
+              .levels = slots(levels),
+              .visible = slots(visible)};
+    if (instance.steered()) s.controls = {scene->controls.data() + instance.firstControl, asset.parts.size()};
+    if (desc.reference) {
+        const Impl& reference = *desc.reference->impl_;
+        if (reference.instances[id].generation == instance.generation) {
+            s.reference = &reference;
+            s.referenceOwn = &reference.instances[id];
+        }
+    }
+    return s;
+}
+
+LevelTest Selection::Impl::Subject::wholeTest(const LevelPolicy& by, const Scene::Impl& in) const {
+    const float* errors = in.wholeErrors.data() + size_t(instance.asset) * format::kMaxLevels;
+    const Sphere sphere = sphereOf(*asset.record);
+    // The errors have the parts' importance in them.
+    return {by, {errors, asset.levelCount()}, 1, sphere.radius, standingFor(by, instance.placement, sphere)};
+}
+
+LevelTest Selection::Impl::Subject::patchTest(const LevelPolicy& by, uint32_t patch) const {
+    const PatchBounds& bounds = patches[patch];
+    const Sphere sphere{glm::vec3(bounds.sphere), bounds.sphere.w};
+    const float steering = controls.empty() ? 1 : controls[bounds.part].importance;
+    const size_t count = asset.levelCount();
+    return {by, asset.patchErrors.subspan(patch * count, count), bounds.importance * steering,
+            asset.record->sphereRadius, standingFor(by, instance.placement, sphere)};
+}
+
+uint32_t Selection::Impl::Subject::controlled(uint32_t patch, uint32_t level) const {
+    return controls.empty() ? level : steered(controls[patches[patch].part], level, asset.levelCount());
+}
+
+void Selection::Impl::enter(uint32_t id) {
+    ViewInstance& own = instances[id];
+    const uint32_t generation = scene->instances[id].generation;
+    if (own.generation != generation) own = {.generation = generation};
+}
+
+void Selection::Impl::decideWhole(const Subject& s) {
+    const float keep = 1 - desc.hysteresis, inner = desc.wholeBeyond, outer = inner / (keep * keep);
+    const bool was = s.own.whole;
+    s.own.whole = s.own.inBelt = false;
+    if (s.controls.empty() && s.referenceOwn) {
+        s.own.whole = s.referenceOwn->whole;
+        s.own.inBelt = s.referenceOwn->inBelt;
+    } else if (s.controls.empty() && !desc.view.orthographic) {
+        const Standing at = standing(s.instance.placement, desc.view, sphereOf(*s.asset.record));
+        s.own.whole = beyond(was ? inner : outer, at);
+        s.own.inBelt = !s.own.whole && beyond(inner * keep, at);
+    }
+    if (s.own.whole && !was) s.own.wholeLevel = uint8_t(kNoLevel);
+    if (!s.own.whole && (was || s.own.fresh)) {
+        std::fill(s.wanted.begin(), s.wanted.end(), was ? s.own.wholeLevel : uint8_t(kNoLevel));
+    }
+    s.own.fresh = false;
+}
+
+// Culling -----------------------------------------------------------------------------------------------------------
+
+/// Writes the instance's kind and, where it is mixed, which patches are in the frustum and large enough.
+void Selection::Impl::cull(const Subject& s) {
+    const Frustum frustum = toMeshSpace(desc.frustum, s.instance.placement.toWorld);
+    const Sphere bounds = sphereOf(*s.asset.record);
+    const bool minding = desc.contributionPixels > 0;
+    const auto small = [&](const Sphere& sphere) {
+        const Standing at = standing(s.instance.placement, desc.view, sphere);
+        return minding && tooSmall(desc.contributionPixels, desc.view.pixelsPerUnit, desc.view.orthographic, at);
+    };
+    const Side side = sideOf(frustum, bounds);
+    s.own.kind = s.own.whole ? InstanceKind::whole : InstanceKind::mixed;
+    if (side == Side::outside || small(bounds)) s.own.kind = InstanceKind::culled;
+    if (s.own.kind != InstanceKind::mixed) return;
+    for (size_t p = 0; p < s.patches.size(); ++p) {
+        const Sphere sphere{glm::vec3(s.patches[p].sphere), s.patches[p].sphere.w};
+        const bool out = side == Side::across && sideOf(frustum, sphere) == Side::outside;
+        s.visible[p] = !out && !small(sphere) && !s.hidden(uint32_t(p));
+    }
+}
+
+// Levels ------------------------------------------------------------------------------------------------------------
+
+/// No coarser than the reference allows.
+uint32_t Selection::Impl::withReference(const Subject& s, uint32_t patch, uint32_t level) const {
+    if (!s.reference) return level;
+    const uint32_t slot = s.instance.firstSlot + patch;
+    uint32_t there = 0;
+    if (s.referenceOwn->kind == InstanceKind::mixed && s.reference->visible[slot]) {
+        there = s.reference->levels[slot];
+    } else {
+        const LevelTest test = s.patchTest(s.reference->policy, patch);
+        there = s.controlled(patch, test.coarsest(s.reference->policy.tight, level));
+    }
+    return std::min(level, there + desc.coarserThanReference);
+}
+
+void Selection::Impl::chooseWhole(const Subject& s, ChunkCount& count) {
+    uint32_t level = s.wholeTest(policy, *scene).next(s.own.wholeLevel);
+    if (s.reference && s.referenceOwn->wholeLevel != kNoLevel) {
+        level = std::min<uint32_t>(level, s.referenceOwn->wholeLevel + desc.coarserThanReference);
+    }
+    s.own.wholeLevel = uint8_t(level);
+    if (s.own.kind == InstanceKind::whole) ++count.stats.wholeInstances;
+}
+
+void Selection::Impl::chooseMixed(const Subject& s, ChunkCount& count) {
+    const MeshEye eye = desc.cullBackfaces ? meshEye(desc.view, s.instance.placement.toWorld) : MeshEye{};
+    const uint32_t coarsest = s.asset.levelCount() - 1;
+    const bool mayCoarsen = !s.own.inBelt || desc.triangleBudget > 0;
+    count.stats.consideredPatches += uint32_t(s.patches.size());
+    for (uint32_t p = 0; p < s.patches.size(); ++p) {
+        const uint8_t before = s.levels[p];
+        if (s.visible[p]) {
+            const uint32_t own = s.patchTest(policy, p).next(s.wanted[p], mayCoarsen);
+            s.wanted[p] = uint8_t(own);
+            s.levels[p] = uint8_t(withReference(s, p, s.controlled(p, own)));
+            // Its cone holds at coneLevel and finer ones alone.
+            if (s.levels[p] <= s.patches[p].coneLevel && turnedAway(eye, s.patches[p])) {
+                s.visible[p] = 0;
+                s.levels[p] = uint8_t(std::min(s.patches[p].coneLevel, coarsest));
+            }
+        } else {
+            s.levels[p] = uint8_t(coarsest);
+        }
+        count.stats.culledPatches += !s.visible[p];
+        count.stats.changedPatches += before != s.levels[p];
+    }
+}
+
+void Selection::Impl::choose(uint32_t id, ChunkCount& count) {
+    const Subject s = subject(id);
+    // A culled one too: it is what references and the way back go by.
+    if (s.own.whole) chooseWhole(s, count);
+    if (s.own.kind == InstanceKind::mixed) chooseMixed(s, count);
+    count.stats.visibleInstances += s.own.kind != InstanceKind::culled;
+}
+
+void Selection::update(const Scene& scene, const SelectionDesc& desc) {
+    assert(impl_ && "create is missing");
+    Impl& d = *impl_;
+    d.begin(scene, desc);
+    const auto look = [&d](uint32_t id) {
+        d.enter(id);
+        const Impl::Subject s = d.subject(id);
+        d.decideWhole(s);
+        d.cull(s);
+    };
+    if (desc.triangleBudget > 0) {
+        d.forInstances([&](uint32_t id, ChunkCount&) { look(id); });
+        d.meetBudget();
+    } else {
+        d.forInstances([&](uint32_t id, ChunkCount& count) {
+            look(id);
+            d.choose(id, count);
+        });
+    }
+    const uint32_t chunkCount = (d.scene->instanceEnd + Impl::kChunk - 1) / Impl::kChunk;
+    for (uint32_t chunk = 0; chunk < chunkCount; ++chunk) {
+        const SelectionStats& part = d.chunks[chunk].stats;
+        d.stats.visibleInstances += part.visibleInstances;
+        d.stats.wholeInstances += part.wholeInstances;
+        d.stats.consideredPatches += part.consideredPatches;
+        d.stats.culledPatches += part.culledPatches;
+        d.stats.changedPatches += part.changedPatches;
+    }
+    d.stats.pixels = d.policy.loose.pixels;
+}
+
+void Selection::set(const Scene& scene, uint32_t id, Levels levels) {
+    assert(impl_ && scene.hasInstance(id));
+    Impl& d = *impl_;
+    d.scene = &scene.impl();
+    d.desc.reference = nullptr;
+    d.enter(id);
+    const Impl::Subject s = d.subject(id);
+    assert(levels.size() == s.asset.patchCount());
+    assert(std::all_of(levels.begin(), levels.end(), [&](uint8_t l) { return l < s.asset.levelCount(); }));
+    s.own.kind = InstanceKind::mixed;
+    s.own.whole = false;
+    s.own.fresh = false;
+    std::copy(levels.begin(), levels.end(), s.levels.begin());
+    std::copy(levels.begin(), levels.end(), s.wanted.begin());
+    for (uint32_t p = 0; p < levels.size(); ++p) s.visible[p] = !s.hidden(p);
+}
+
+// What was chosen ---------------------------------------------------------------------------------------------------
+
+InstanceKind Selection::kind(uint32_t id) const {
+    return impl_->scene && impl_->instances[id].generation == impl_->scene->at(id).generation
+               ? impl_->instances[id].kind
+               : InstanceKind::culled;
+}
+
+uint32_t Selection::wholeLevel(uint32_t id) const {
+    assert(kind(id) == InstanceKind::whole);
+    return impl_->instances[id].wholeLevel;
+}
+
+Levels Selection::levels(uint32_t id) const {
+    assert(kind(id) == InstanceKind::mixed);
+    const SceneInstance& instance = impl_->scene->at(id);
+    return {impl_->levels.data() + instance.firstSlot, impl_->scene->assetAt(instance.asset).desc.asset->patchCount()};
+}
+
+std::span<const uint8_t> Selection::visible(uint32_t id) const {
+    assert(kind(id) == InstanceKind::mixed);
+    const SceneInstance& instance = impl_->scene->at(id);
+    return {impl_->visible.data() + instance.firstSlot, impl_->scene->assetAt(instance.asset).desc.asset->patchCount()};
+}
+
+const SelectionStats& Selection::stats() const {
+    return impl_->stats;
+}
+
+} // namespace xgc

@@ -1,0 +1,109 @@
+#pragma once
+
+#include "culling.h"
+#include "level_choice.h"
+
+#include <xgc/selection.h>
+
+namespace xgc {
+
+/// An instance as one view sees it.
+struct ViewInstance {
+    uint32_t generation = 0; ///< of the scene's instance that this was written for
+    InstanceKind kind = InstanceKind::culled;
+    bool whole = false;            ///< takes one level, whether culled or not
+    bool fresh = true;             ///< its patches have no level yet
+    uint8_t wholeLevel = kNoLevel; ///< kept while whole
+    bool inBelt = false;           ///< mixed, but near where it would be whole
+};
+
+/// What a pass over some instances counted; cache lines of their own for threads.
+struct alignas(64) ChunkCount {
+    SelectionStats stats;
+    uint64_t triangles = 0;
+};
+
+struct Selection::Impl : Allocated<Selection::Impl> {
+    static constexpr uint32_t kChunk = 32; ///< instances a job
+
+    SceneConfig config;
+    FixedArray<ViewInstance> instances;
+    FixedArray<uint8_t> wanted;  ///< by slot: the policy's own level, kNoLevel before the first
+    FixedArray<uint8_t> levels;  ///< by slot: after controls, reference and culling
+    FixedArray<uint8_t> visible; ///< by slot
+    FixedArray<ChunkCount> chunks;
+    SelectionStats stats;
+
+    // The latest update's.
+    const Scene::Impl* scene = nullptr;
+    SelectionDesc desc;
+    LevelPolicy policy;
+
+    bool allocate();
+
+    /// One instance, as a pass works on it.
+    struct Subject {
+        const SceneInstance& instance;
+        const SceneAsset& stored;
+        const AssetView& asset;
+        ViewInstance& own;
+        std::span<const PatchBounds> patches;
+        std::span<const PartControl> controls; ///< empty: not steered
+        std::span<uint8_t> wanted, levels, visible;
+        // Of the reference.
+        const Impl* reference = nullptr;
+        const ViewInstance* referenceOwn = nullptr;
+
+        LevelTest wholeTest(const LevelPolicy& by, const Scene::Impl& in) const;
+        LevelTest patchTest(const LevelPolicy& by, uint32_t patch) const;
+        uint32_t controlled(uint32_t patch, uint32_t level) const;
+        bool hidden(uint32_t patch) const { return !controls.empty() && controls[patches[patch].part].hidden; }
+    };
+    Subject subject(uint32_t id);
+
+    void begin(const Scene& scene, const SelectionDesc& desc);
+    void enter(uint32_t id);
+    void decideWhole(const Subject& s);
+    void cull(const Subject& s);
+    uint32_t withReference(const Subject& s, uint32_t patch, uint32_t level) const;
+    void chooseWhole(const Subject& s, ChunkCount& count);
+    void chooseMixed(const Subject& s, ChunkCount& count);
+    void choose(uint32_t id, ChunkCount& count);
+
+    // Budgets (budget.cpp).
+    enum class Count : uint32_t { most, least };
+    /// Triangles of all that is visible with each patch at the coarsest level that fits: a bound from above, or what no
+    /// choice within the pixels can be below.
+    uint64_t countAt(float pixels, Count which);
+    uint64_t countInstance(uint32_t id, const LevelPolicy& at, Count which);
+    /// Triangles that the chosen levels draw at most.
+    uint64_t countChosen();
+    uint64_t boundOf(const Subject& s) const;
+    float pixelsWithin(uint64_t budget, float least, Count which);
+    void meetBudget();
+
+    /// work(id, count) for each instance that is there, on the host's jobs; the counts are left in `chunks`.
+    template <typename Work>
+    void forInstances(Work work);
+};
+
+template <typename Work>
+void Selection::Impl::forInstances(Work work) {
+    struct Pass {
+        Impl& self;
+        Work& work;
+        static void run(void* data, uint32_t chunk) {
+            Pass& pass = *static_cast<Pass*>(data);
+            ChunkCount& count = pass.self.chunks[chunk] = {};
+            const uint32_t end = std::min(pass.self.scene->instanceEnd, (chunk + 1) * kChunk);
+            for (uint32_t id = chunk * kChunk; id < end; ++id) {
+                if (pass.self.scene->instances[id].generation % 2 == 1) pass.work(id, count);
+            }
+        }
+    } pass{*this, work};
+    const uint32_t count = (scene->instanceEnd + kChunk - 1) / kChunk;
+    if (desc.jobs.run && count > 1) return desc.jobs.run(desc.jobs.user, count, &Pass::run, &pass);
+    for (uint32_t chunk = 0; chunk < count; ++chunk) Pass::run(&pass, chunk);
+}
+
+} // namespace xgc
