@@ -1,30 +1,15 @@
 #pragma once
 
+#include "float4.h"
+
 #include <glm/glm.hpp>
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace xgc::bake {
-
-struct Box {
-    glm::vec3 low{1e30f}, high{-1e30f};
-    void add(const glm::vec3& p) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-    }
-    void add(const Box& box) {
-        low = glm::min(low, box.low);
-        high = glm::max(high, box.high);
-    }
-    glm::vec3 center() const { return (low + high) * 0.5f; }
-    /// Half of the surface.
-    float area() const {
-        const glm::vec3 d = high - low;
-        return d.x * d.y + d.y * d.z + d.z * d.x;
-    }
-};
 
 /// Triangles to shoot rays at. A tree of four children a node, four triangles a leaf. Its own and not a library's
 /// because what a ray meets must be the same on any machine: libraries choose their instructions by the processor.
@@ -39,29 +24,23 @@ public:
     /// to be tried. Start with 0.
     bool isBlocked(const glm::vec3& a, const glm::vec3& b, uint32_t& occluder) const;
 
-private:
-    /// Four numbers side by side: each is computed as it would be alone.
-    using Float4 = float __attribute__((vector_size(16)));
     struct Node {
-        Float4 low[3], high[3];
-        uint32_t child[4]; ///< kLeaf set: a packet; kEmpty: none
+        std::array<std::array<Float4, 2>, 3> planes; ///< per axis: low, high sides of the children; low > high: none
+        std::array<uint32_t, 4> child;               ///< kLeaf set: a packet
+        std::array<uint8_t, 8> order; ///< by octant of a direction: children, the farthest first, two bits each
     };
     /// Four triangles, side by side: corner, two edges.
     struct Packet {
-        Float4 corner[3], edge1[3], edge2[3];
+        std::array<Float4, 3> corner, edge1, edge2;
     };
-    struct Ray;
-    static float meet(const Packet& packet, const Ray& ray, float to);
-    uint32_t build(std::span<uint32_t> triangles, uint32_t depth);
-    uint32_t addPacket(std::span<const uint32_t> triangles);
-    template <class Meet>
-    void walk(const Ray& ray, const Meet& meet) const;
+    static constexpr uint32_t kLeaf = 0x80000000u;
 
-    std::span<const glm::vec3> soup_;
-    std::vector<Box> boxes_; ///< of triangles, while building
+private:
+    struct Ray;
+
     std::vector<Node> nodes_;
     std::vector<Packet> packets_;
-    uint32_t root_ = 0;
+    uint32_t root_ = 0; ///< as a child
 };
 
 } // namespace xgc::bake
