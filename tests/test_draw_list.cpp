@@ -1,4 +1,5 @@
 #include "../runtime/src/range_allocator.h"
+#include "counted_allocations.h"
 #include "meshes/patched_torus.h"
 
 #include <xgc/draw_list.h>
@@ -7,60 +8,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <map>
-#include <new>
 #include <random>
 #include <span>
 #include <string>
-
-namespace {
-
-uint64_t allocations = 0;
-
-/// Not inlined: g++ would see memory of `new` given to `free`.
-[[gnu::noinline]] void* countedAllocate(size_t bytes) {
-    ++allocations;
-    if (void* p = std::malloc(bytes ? bytes : 1)) return p;
-    std::abort();
-}
-[[gnu::noinline]] void release(void* p) {
-    std::free(p);
-}
-
-} // namespace
-
-// Every allocation of the program is counted. All forms are replaced: a sanitizer brings each of them.
-void* operator new(size_t bytes) {
-    return countedAllocate(bytes);
-}
-void* operator new[](size_t bytes) {
-    return countedAllocate(bytes);
-}
-void* operator new(size_t bytes, const std::nothrow_t&) noexcept {
-    return countedAllocate(bytes);
-}
-void* operator new[](size_t bytes, const std::nothrow_t&) noexcept {
-    return countedAllocate(bytes);
-}
-void operator delete(void* p) noexcept {
-    release(p);
-}
-void operator delete[](void* p) noexcept {
-    release(p);
-}
-void operator delete(void* p, size_t) noexcept {
-    release(p);
-}
-void operator delete[](void* p, size_t) noexcept {
-    release(p);
-}
-void operator delete(void* p, const std::nothrow_t&) noexcept {
-    release(p);
-}
-void operator delete[](void* p, const std::nothrow_t&) noexcept {
-    release(p);
-}
 
 namespace {
 
@@ -379,15 +330,15 @@ TEST_CASE("frames, additions and removals allocate nothing") {
     REQUIRE(assets.large.failure == "");
     const xgc::AssetView& asset = assets.large.view;
     xgc::DrawList list;
-    const uint64_t beforeCreate = allocations;
+    const uint64_t beforeCreate = xgc::test::allocations;
     REQUIRE(list.create({.instanceCapacity = 4, .materialCapacity = 8}).ok());
-    CHECK(allocations > beforeCreate); // the counter counts
+    CHECK(xgc::test::allocations > beforeCreate); // the counter counts
     Random random(5);
     std::vector<std::vector<uint8_t>> states;
     for (int i = 0; i < 32; ++i) states.push_back(random.levels(asset));
     std::vector<uint32_t> staging(4 * 3 * faces(asset));
     bool ok = true;
-    const uint64_t before = allocations;
+    const uint64_t before = xgc::test::allocations;
     for (uint32_t frame = 0; frame < 200; ++frame) {
         uint32_t id = 0;
         ok &= list.addInstance({&asset, 0, 0}, id).ok();
@@ -398,7 +349,7 @@ TEST_CASE("frames, additions and removals allocate nothing") {
         ok &= list.stats().triangles > 0 && !list.draws().empty();
         list.removeInstance(id);
     }
-    CHECK(allocations == before);
+    CHECK(xgc::test::allocations == before);
     CHECK(ok);
 }
 
@@ -511,10 +462,11 @@ TEST_CASE("range allocator: a request is refused only where no free range holds 
     int refused = 0;
     for (int step = 0; step < 5000; ++step) {
         const uint32_t count = 1 + random.below(90);
-        const uint32_t r = allocator.allocate(count);
+        const uint32_t wasLongest = allocator.longestFree(), r = allocator.allocate(count);
         uint32_t longest = 0;
         for (uint32_t i = 0, run = 0; i < kSize; ++i) longest = std::max(longest, run = taken[i] ? 0 : run + 1);
         CHECK((r != xgc::RangeAllocator::kNoRange) == (longest >= count));
+        CHECK(wasLongest == longest);
         if (r != xgc::RangeAllocator::kNoRange) {
             std::fill_n(taken.begin() + allocator.offset(r), count, true);
             live.push_back(r);

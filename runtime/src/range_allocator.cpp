@@ -121,7 +121,7 @@ void RangeAllocator::absorbNext(uint32_t node) {
     unused_ = next;
 }
 
-void RangeAllocator::free(uint32_t range) {
+uint32_t RangeAllocator::free(uint32_t range) {
     assert(range < nodes_.size() && nodes_[range].taken);
     nodes_[range].taken = false;
     freeTotal_ += nodes_[range].count;
@@ -138,6 +138,19 @@ void RangeAllocator::free(uint32_t range) {
         range = before;
     }
     putInBin(range);
+    return nodes_[range].count;
+}
+
+uint32_t RangeAllocator::longestFree() const {
+    for (uint32_t word = uint32_t(filled_.size()); word-- > 0;) {
+        if (filled_[word] == 0) continue;
+        uint32_t longest = 0;
+        const uint32_t bin = word * 64 + uint32_t(std::bit_width(filled_[word])) - 1;
+        for (uint32_t n = bins_[bin]; n != kNoRange; n = nodes_[n].nextInBin)
+            longest = std::max(longest, nodes_[n].count);
+        return longest;
+    }
+    return 0;
 }
 
 } // namespace xgc

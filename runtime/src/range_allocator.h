@@ -23,11 +23,14 @@ public:
 
     /// A range of `count` > 0, or kNoRange where none is large enough or maxRanges are taken.
     uint32_t allocate(uint32_t count);
-    void free(uint32_t range);
+    /// Returns the count of the free run that it is now part of.
+    uint32_t free(uint32_t range);
 
     uint32_t offset(uint32_t range) const { return nodes_[range].offset; }
     uint32_t count(uint32_t range) const { return nodes_[range].count; }
     uint32_t freeTotal() const { return freeTotal_; }
+    /// Count of the longest free run. Looks through all runs of its bin.
+    uint32_t longestFree() const;
     uint32_t rangeCount() const { return rangeCount_; }
 
 private:
