@@ -242,7 +242,7 @@ private:
         if (random_.below(16) == 0) exchangeAsset();
         cache_.beginFrame(std::span(staging_).first(stagingBytes_));
         draws_.clear();
-        hits_ = misses_ = refused_ = 0;
+        refused_ = 0;
         for (Instance& instance : instances_) {
             for (const Held& held : instance.patches) willDraw(held);
             willDraw(instance.whole);
@@ -359,7 +359,7 @@ private:
     std::array<const AssetView*, kIds> views_{};
     std::vector<Instance> instances_;
     std::vector<FakeGpu::Draw> draws_;
-    uint32_t hits_ = 0, misses_ = 0, refused_ = 0;
+    uint32_t refused_ = 0;
     Tally tally_;
 };
 
@@ -652,6 +652,20 @@ TEST_CASE("the cap on a frame's upload delays and never loses") {
     checkSays(fits.acquire(1, fine, range), "next frame", patchBytes);
     CHECK(range == kNoRange);
     fits.cache.endFrame();
+}
+
+TEST_CASE("a file that lies about its triangles makes no range longer than staging") {
+    const Assets assets;
+    const std::vector<uint32_t> zeros(size_t(assets.small.view.patchCount()) * assets.small.view.levelCount(), 0);
+    AssetView liar = assets.small.view;
+    liar.patchFaceCounts = zeros;
+    OneAsset one(liar, {}, kSmallPatch - 4);
+    one.begin();
+    uint32_t range = kNoRange;
+    checkSays(one.acquire(0, one.uniform(0), range), "all of the frame's staging", kSmallPatch);
+    one.hold(0, one.uniform(1));
+    one.cache.endFrame();
+    for (size_t i = one.staging.size() - 4; i < one.staging.size(); ++i) CHECK(one.staging[i] == kGuard);
 }
 
 TEST_CASE("copies whose both ends meet are one") {

@@ -57,7 +57,7 @@ struct Source {
 
     bool has(uint32_t patch) const { return material == kNone || asset.patches[patch].material == material; }
     bool isOnePatch() const { return patchEnd - firstPatch == 1; }
-    uint64_t byteCapacity() const;
+    uint64_t bytesAtMost() const;
 };
 
 /// An index list that was built, to be written.
@@ -73,13 +73,13 @@ Status outOfCapacity(const char* message, uint64_t element) {
     return {StatusCode::outOfCapacity, message, element};
 }
 
-/// The bytes that its indices take at most.
-uint64_t Source::byteCapacity() const {
-    uint64_t indices = 0;
+/// The bytes that its indices take at most, if the file says the truth.
+uint64_t Source::bytesAtMost() const {
+    uint64_t triangles = 0;
     for (uint32_t p = firstPatch; p < patchEnd; ++p) {
-        if (has(p)) indices += indexCapacity(asset, p, levels);
+        if (has(p)) triangles += triangleBound(asset, p, levels);
     }
-    return indices * sizeof(uint32_t);
+    return triangles * 3 * sizeof(uint32_t);
 }
 
 } // namespace
@@ -123,7 +123,7 @@ struct IndexCache::Impl : Allocated<IndexCache::Impl> {
     void dropUnheld(uint32_t asset, IdList& list);
 
     Status acquire(std::span<const std::byte> name, const Source& source, uint32_t& range);
-    Status roomInFrame(const Source& source) const;
+    Status roomInFrame(uint64_t bytes) const;
     std::span<const uint32_t> buildPatch(const Source& source, uint32_t patch);
     Built build(const Source& source);
     Status reserve(std::span<const std::byte> name, uint32_t hash, uint32_t words, uint32_t& id);
@@ -306,23 +306,22 @@ IndexRange IndexCache::at(uint32_t range) const {
 // A miss ------------------------------------------------------------------------------------------------------------
 
 /// Refuses what is known to fail before it is built.
-Status IndexCache::Impl::roomInFrame(const Source& source) const {
+Status IndexCache::Impl::roomInFrame(uint64_t bytes) const {
     if (unused.empty() && idle.empty()) {
         return outOfCapacity("all ranges are held or in flight: ask again after framesInFlight frames, or raise "
                              "IndexCacheConfig::rangeCapacity",
                              config.rangeCapacity + 1ull);
     }
-    const uint64_t needed = source.byteCapacity();
-    if (needed > staging.size()) {
+    if (bytes > staging.size()) {
         return outOfCapacity("the range needs more than all of the frame's staging memory: give beginFrame as many "
                              "bytes as element says, or ask for coarser levels first",
-                             needed);
+                             bytes);
     }
-    if (needed > staging.size() - stagingUsed) {
+    if (bytes > staging.size() - stagingUsed) {
         return outOfCapacity("the frame's staging memory is full: ask again next frame, or give beginFrame more",
-                             needed);
+                             bytes);
     }
-    if (needed > 0 && copyCount == config.copyCapacity) {
+    if (bytes > 0 && copyCount == config.copyCapacity) {
         return outOfCapacity("too many copies in one frame: ask again next frame, or raise "
                              "IndexCacheConfig::copyCapacity",
                              copyCount + 1ull);
@@ -434,11 +433,12 @@ Status IndexCache::Impl::acquire(std::span<const std::byte> name, const Source& 
         return {};
     }
     Built built;
-    Status status = roomInFrame(source);
+    Status status = roomInFrame(source.bytesAtMost());
     if (status.ok()) {
         built = build(source);
-        status = reserve(name, hash, built.words(), id);
+        status = roomInFrame(uint64_t(built.words()) * kWord); // the counts in a file may lie
     }
+    if (status.ok()) status = reserve(name, hash, built.words(), id);
     if (!status.ok()) {
         ++stats.refusals;
         return status;
