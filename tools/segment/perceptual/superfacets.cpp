@@ -45,45 +45,60 @@ private:
 class Grower {
 public:
     Grower(const CellGraph& graph, const EdgeFeatures& features)
-        : graph_(graph), cost_(graph.links.size()), distance_(graph.size(), kFar), owner_(graph.size(), kNone),
+        : graph_(graph), steps_(graph.arcs.size()), reached_(graph.size(), {kFar, kNone}),
           queue_(0.3f / std::sqrt(float(graph.size()))) {
         constexpr float kToll = 0.15f;
-        for (size_t l = 0; l < cost_.size(); ++l) {
+        std::vector<float> cost(graph.links.size());
+        for (size_t l = 0; l < cost.size(); ++l) {
             const CellGraph::Link& link = graph.links[l];
             const float step = glm::length(graph.centers[link.b] - graph.centers[link.a]);
-            cost_[l] = step + kToll * std::max(0.0f, -features.angle[l]);
+            cost[l] = step + kToll * std::max(0.0f, -features.angle[l]);
         }
+        for (size_t a = 0; a < steps_.size(); ++a) steps_[a] = {graph.arcs[a].to, cost[graph.arcs[a].link]};
     }
 
     Superfacets run(uint32_t wanted) {
         seedIslands();
         while (result_.count() < wanted && addBatch(wanted)) {
         }
-        result_.ofCell = std::move(owner_);
+        result_.ofCell.reserve(reached_.size());
+        for (const Reached& cell : reached_) result_.ofCell.push_back(cell.owner);
         return std::move(result_);
     }
 
 private:
+    /// An arc by what it costs.
+    struct Step {
+        uint32_t to;
+        float cost;
+    };
+    /// How near a cell's nearest seed is.
+    struct Reached {
+        float distance;
+        uint32_t owner; ///< a seed; kNone: no seed yet
+    };
+
     void addSeed(uint32_t cell) {
         const uint32_t seed = result_.count();
         result_.seeds.push_back(cell);
         reach(cell, 0, seed);
     }
     void reach(uint32_t cell, float distance, uint32_t seed) {
-        distance_[cell] = distance;
-        owner_[cell] = seed;
+        reached_[cell] = {distance, seed};
         queue_.push(distance, cell);
     }
     void settle() {
         float distance = 0;
         uint32_t cell = 0;
         while (queue_.pop(distance, cell)) {
-            if (distance > distance_[cell]) continue;
-            for (const CellGraph::Arc& arc : graph_.arcsOf(cell)) {
-                const float there = distance + cost_[arc.link];
-                const bool nearer = there < distance_[arc.to];
-                if (nearer || (there == distance_[arc.to] && owner_[cell] < owner_[arc.to]))
-                    reach(arc.to, there, owner_[cell]);
+            const Reached here = reached_[cell];
+            if (distance > here.distance) continue;
+            for (uint32_t a = graph_.arcOffsets[cell]; a < graph_.arcOffsets[cell + 1]; ++a) {
+                const Step& step = steps_[a];
+                const Reached& other = reached_[step.to];
+                const float there = distance + step.cost;
+                if (there < other.distance || (there == other.distance && here.owner < other.owner))
+                    reach(step.to, there, here.owner);
             }
         }
     }
@@ -101,7 +116,7 @@ private:
         addSeed(farthest);
         settle();
         for (uint32_t c = 0; c < graph_.size(); ++c) {
-            if (owner_[c] != kNone) continue;
+            if (reached_[c].owner != kNone) continue;
             addSeed(c);
             settle();
         }
@@ -109,19 +124,23 @@ private:
 
     /// The farthest cell of every region, as far as they are far; false where none is left.
     bool addBatch(uint32_t wanted) {
-        std::vector<uint32_t> farthest(result_.count(), kNone);
+        struct Farthest {
+            float distance;
+            uint32_t cell;
+        };
+        std::vector<Farthest> farthest(result_.count(), {-1, kNone});
         for (uint32_t c = 0; c < graph_.size(); ++c) {
-            uint32_t& best = farthest[owner_[c]];
-            if (best == kNone || distance_[c] > distance_[best]) best = c;
+            Farthest& best = farthest[reached_[c].owner];
+            if (reached_[c].distance > best.distance) best = {reached_[c].distance, c};
         }
-        std::sort(farthest.begin(), farthest.end(), [&](uint32_t a, uint32_t b) {
-            return distance_[a] != distance_[b] ? distance_[a] > distance_[b] : a < b;
+        std::sort(farthest.begin(), farthest.end(), [](const Farthest& a, const Farthest& b) {
+            return a.distance != b.distance ? a.distance > b.distance : a.cell < b.cell;
         });
-        const float most = distance_[farthest[0]];
+        const float most = farthest[0].distance;
         if (!(most > 0)) return false;
         const uint32_t room = std::min(wanted - result_.count(), std::max(1u, result_.count() / 4));
-        for (uint32_t i = 0; i < farthest.size() && i < room && distance_[farthest[i]] >= 0.8f * most; ++i) {
-            chosen_.push_back(farthest[i]);
+        for (uint32_t i = 0; i < farthest.size() && i < room && farthest[i].distance >= 0.8f * most; ++i) {
+            chosen_.push_back(farthest[i].cell);
         }
         for (const uint32_t c : chosen_) addSeed(c);
         chosen_.clear();
@@ -130,9 +149,8 @@ private:
     }
 
     const CellGraph& graph_;
-    std::vector<float> cost_; ///< per link
-    std::vector<float> distance_;
-    std::vector<uint32_t> owner_;
+    std::vector<Step> steps_; ///< as the graph's arcs
+    std::vector<Reached> reached_;
     BucketQueue queue_;
     std::vector<uint32_t> chosen_;
     Superfacets result_;
