@@ -9,6 +9,9 @@ namespace xgc::bake {
 
 namespace {
 
+/// Children that wait during a walk: all but one of each node above, and one node's more that are written and dropped.
+constexpr size_t kMostWaiting = (RayScene::kWidth - 1) * RayTree::kMostDepth + 2 * RayScene::kWidth;
+
 float inverseOf(float direction) {
     constexpr float kTiny = 1e-12f;
     return 1 / (std::abs(direction) > kTiny ? direction : direction < 0 ? -kTiny : kTiny);
@@ -35,14 +38,18 @@ struct RayScene::Ray {
     }
 
     /// Which of a node's children it passes before `to`, as bits, and where it enters them.
-    uint32_t passes(const Node& node, float to, Float4& enter) const {
-        Float4 leave = fill4(to);
-        enter = from;
-        for (size_t k = 0; k < 3; ++k) {
-            enter = max4((node.planes[k][nearSide[k]] - origin[k]) * inverse[k], enter);
-            leave = min4((node.planes[k][1 - nearSide[k]] - origin[k]) * inverse[k], leave);
+    uint32_t passes(const Node& node, float to, Lanes& enter) const {
+        uint32_t bits = 0;
+        for (size_t half = 0; half < enter.size(); ++half) {
+            Float4 in = from, out = fill4(to);
+            for (size_t k = 0; k < 3; ++k) {
+                in = max4((node.planes[k][nearSide[k]][half] - origin[k]) * inverse[k], in);
+                out = min4((node.planes[k][1 - nearSide[k]][half] - origin[k]) * inverse[k], out);
+            }
+            enter[half] = in;
+            bits |= bitsOf(in <= out * 1.0000004f) << 4 * half; // rounding must not lose a box
         }
-        return bitsOf(enter <= leave * 1.0000004f); // rounding must not lose a box
+        return bits;
     }
 
     /// Nearest of a packet's four hits before `to`, or a value beyond it (Möller and Trumbore 1997).
@@ -82,7 +89,7 @@ float RayScene::nearestHit(const glm::vec3& origin, const glm::vec3& direction, 
     };
     constexpr float kFar = 1e29f;
     const Ray ray(origin, direction, from);
-    std::array<Visit, 3 * RayTree::kMostDepth + 4> stack;
+    std::array<Visit, kMostWaiting> stack;
     size_t depth = 0;
     float nearest = kFar;
     for (Visit visit = {root_, from};;) {
@@ -90,11 +97,11 @@ float RayScene::nearestHit(const glm::vec3& origin, const glm::vec3& direction, 
             nearest = std::min(nearest, ray.meet(packets_[visit.what & ~kLeaf], nearest));
         } else {
             const Node& node = nodes_[visit.what];
-            Float4 enter;
+            Lanes enter;
             const uint32_t bits = ray.passes(node, nearest, enter), order = node.order[ray.octant];
-            for (uint32_t i = 0; i < 4; ++i) {
-                const uint32_t c = order >> 2 * i & 3;
-                stack[depth] = {node.child[c], enter[c]};
+            for (uint32_t i = 0; i < kWidth; ++i) {
+                const uint32_t c = order >> kChildBits * i & (kWidth - 1);
+                stack[depth] = {node.child[c], enter[c / 4][c % 4]};
                 depth += bits >> c & 1;
             }
         }
@@ -109,7 +116,7 @@ float RayScene::nearestHit(const glm::vec3& origin, const glm::vec3& direction, 
 bool RayScene::isBlocked(const glm::vec3& a, const glm::vec3& b, uint32_t& occluder) const {
     const Ray ray(a, b - a, 0);
     if (ray.meet(packets_[occluder], 1) < 1) return true;
-    std::array<uint32_t, 3 * RayTree::kMostDepth + 4> stack;
+    std::array<uint32_t, kMostWaiting> stack;
     size_t depth = 0;
     for (uint32_t what = root_;;) {
         if (what & kLeaf) {
@@ -120,9 +127,9 @@ bool RayScene::isBlocked(const glm::vec3& a, const glm::vec3& b, uint32_t& occlu
             }
         } else {
             const Node& node = nodes_[what];
-            Float4 enter;
+            Lanes enter;
             const uint32_t bits = ray.passes(node, 1, enter);
-            for (uint32_t c = 0; c < 4; ++c) {
+            for (uint32_t c = 0; c < kWidth; ++c) {
                 stack[depth] = node.child[c];
                 depth += bits >> c & 1;
             }

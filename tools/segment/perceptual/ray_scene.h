@@ -11,7 +11,7 @@
 
 namespace xgc::bake {
 
-/// Triangles to shoot rays at. A tree of four children a node, four triangles a leaf. Its own and not a library's
+/// Triangles to shoot rays at. A tree of eight children a node, four triangles a leaf. Its own and not a library's
 /// because what a ray meets must be the same on any machine: libraries choose their instructions by the processor.
 class RayScene {
 public:
@@ -24,10 +24,12 @@ public:
     /// to be tried. Start with 0.
     bool isBlocked(const glm::vec3& a, const glm::vec3& b, uint32_t& occluder) const;
 
-    struct Node {
-        std::array<std::array<Float4, 2>, 3> planes; ///< per axis: low, high sides of the children; low > high: none
-        std::array<uint32_t, 4> child;               ///< kLeaf set: a packet
-        std::array<uint8_t, 8> order; ///< by octant of a direction: children, the farthest first, two bits each
+    static constexpr uint32_t kWidth = 8, kChildBits = 3;
+    using Lanes = std::array<Float4, kWidth / 4>; ///< a number a child
+    struct alignas(64) Node {
+        std::array<std::array<Lanes, 2>, 3> planes; ///< per axis: low, high sides of the children; low > high: none
+        std::array<uint32_t, kWidth> child;         ///< kLeaf set: a packet
+        std::array<uint32_t, 8> order;              ///< by octant of a direction: children, the farthest first
     };
     /// Four triangles, side by side: corner, two edges.
     struct Packet {

@@ -112,16 +112,22 @@ Split split(std::span<Item> items, uint32_t depth) {
     return {left == 0 || left == items.size() ? half : left, bins.axis};
 }
 
-/// Of a node's children, two by two split along axes of their own, for directions that go down along the axes whose
-/// bits are set.
-uint8_t farthestFirst(uint32_t octant, size_t axis, const std::array<size_t, 2>& axes) {
+constexpr size_t kWidth = RayScene::kWidth;
+/// Of a node: the split before child i is along axis [i].
+using Axes = std::array<size_t, kWidth>;
+
+/// Children in the order of a ray that goes down along the axes whose bits are set, the farthest first.
+uint32_t farthestFirst(uint32_t octant, const Axes& axes) {
     uint32_t order = 0;
-    for (uint32_t i = 0; i < 4; ++i) {
-        const uint32_t half = ((i >> 1) ^ 1) ^ (octant >> axis & 1);
-        const uint32_t quarter = ((i & 1) ^ 1) ^ (octant >> axes[half] & 1);
-        order |= (2 * half + quarter) << 2 * i;
+    for (uint32_t i = 0; i < kWidth; ++i) {
+        uint32_t child = 0;
+        for (uint32_t step = kWidth / 2; step > 0; step /= 2) {
+            const uint32_t isDown = octant >> axes[child + step] & 1, isLate = i & step ? 1 : 0;
+            if (isDown == isLate) child += step;
+        }
+        order |= child << RayScene::kChildBits * i;
     }
-    return uint8_t(order);
+    return order;
 }
 
 class Builder {
@@ -159,24 +165,23 @@ private:
         return RayScene::kLeaf | uint32_t(tree_.packets.size() - 1);
     }
 
-    /// Two splits, one inside the other.
+    /// Splits within splits, until there is a range a child.
     uint32_t addNode(std::span<Item> items, uint32_t depth) {
         const auto index = uint32_t(tree_.nodes.size());
         tree_.nodes.emplace_back();
-        std::array<std::span<Item>, 4> parts = {};
-        const Split whole = split(items, depth);
-        const std::array<std::span<Item>, 2> halves = {items.first(whole.at), items.subspan(whole.at)};
-        std::array<size_t, 2> axes = {};
-        for (size_t h = 0; h < 2; ++h) {
-            const size_t size = halves[h].size();
-            const Split part = size <= kLeafSize ? Split{size, 0} : split(halves[h], depth);
-            parts[2 * h] = halves[h].first(part.at);
-            parts[2 * h + 1] = halves[h].subspan(part.at);
-            axes[h] = part.axis;
+        std::array<std::span<Item>, kWidth> parts = {items};
+        Axes axes = {};
+        for (size_t step = kWidth / 2; step > 0; step /= 2) {
+            for (size_t i = 0; i < kWidth; i += 2 * step) {
+                if (parts[i].size() <= kLeafSize) continue;
+                const Split at = split(parts[i], depth);
+                axes[i + step] = at.axis;
+                parts[i + step] = parts[i].subspan(at.at);
+                parts[i] = parts[i].first(at.at);
+            }
         }
-        for (uint32_t octant = 0; octant < 8; ++octant)
-            tree_.nodes[index].order[octant] = farthestFirst(octant, whole.axis, axes);
-        for (size_t i = 0; i < 4; ++i) addChild(index, i, parts[i], depth);
+        for (uint32_t octant = 0; octant < 8; ++octant) tree_.nodes[index].order[octant] = farthestFirst(octant, axes);
+        for (size_t i = 0; i < kWidth; ++i) addChild(index, i, parts[i], depth);
         return index;
     }
 
@@ -184,8 +189,8 @@ private:
         Box box;
         for (const Item& item : items) box.add(item.box);
         for (size_t k = 0; k < 3; ++k) {
-            tree_.nodes[node].planes[k][0][i] = box.low[k];
-            tree_.nodes[node].planes[k][1][i] = box.high[k];
+            tree_.nodes[node].planes[k][0][i / 4][i % 4] = box.low[k];
+            tree_.nodes[node].planes[k][1][i / 4][i % 4] = box.high[k];
         }
         if (items.empty()) return;
         const uint32_t child = items.size() <= kLeafSize ? addPacket(items) : addNode(items, depth + 1);
