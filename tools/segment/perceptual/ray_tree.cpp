@@ -28,7 +28,7 @@ struct Box {
 /// A triangle on its way to a leaf.
 struct Item {
     Box box;
-    uint32_t triangle;
+    uint32_t triangle, bin;
 };
 
 Float4 lanesOf(const glm::vec3& p) {
@@ -41,7 +41,10 @@ constexpr size_t kBins = 8;
 struct Bins {
     size_t axis = 0;
     float low = 0, scale = 0; ///< scale 0: all centres in one place
-    size_t of(const Item& item) const { return size_t(int((item.box.center()[axis] - low) * scale)); }
+    uint32_t of(const Box& box) const {
+        const float center = (box.low[axis] + box.high[axis]) * 0.5f;
+        return uint32_t(int((center - low) * scale));
+    }
 };
 
 Bins binsOf(std::span<const Item> items) {
@@ -99,15 +102,17 @@ Split split(std::span<Item> items, uint32_t depth) {
     if (!(bins.scale > 0)) return {half, 0};
     std::array<Box, kBins> boxes;
     std::array<uint32_t, kBins> counts = {};
-    for (const Item& item : items) {
-        const size_t b = bins.of(item);
-        boxes[b].add(item.box);
-        ++counts[b];
+    for (Item& item : items) {
+        item.bin = bins.of(item.box);
+        boxes[item.bin].add(item.box);
+        ++counts[item.bin];
     }
     const size_t best = bestPlane(boxes, counts);
     size_t left = 0;
-    for (Item& item : items) {
-        if (bins.of(item) < best) std::swap(item, items[left++]);
+    for (Item& item : items) { // without a branch, which would be taken at random
+        const bool isLeft = item.bin < best;
+        std::swap(item, items[left]);
+        left += isLeft;
     }
     return {left == 0 || left == items.size() ? half : left, bins.axis};
 }

@@ -76,7 +76,8 @@ class Merger {
 public:
     Merger(const CellGraph& graph, const EdgeFeatures& features, const FirstRegions& first,
            std::span<const float> diameters, const LinesOfSight& lines)
-        : regions_(first.count()), group_(first.group) {
+        : regions_(first.count()), group_(first.group), alive_(first.count()) {
+        std::iota(alive_.begin(), alive_.end(), 0u);
         for (uint32_t c = 0; c < graph.size(); ++c) {
             const uint32_t r = first.ofCell[c];
             regions_[r].area += graph.areas[c];
@@ -123,14 +124,11 @@ private:
 
     void copyLines(const FirstRegions& first, uint32_t superfacets, const LinesOfSight& lines) {
         const size_t n = regions_.size();
-        lines_.seen.resize(n * n);
-        lines_.sampled.resize(n * n);
+        lines_.resize(n * n);
         for (size_t a = 0; a < n; ++a) {
-            for (size_t b = 0; b < n; ++b) {
-                const size_t at = size_t(first.superfacet[a]) * superfacets + first.superfacet[b];
-                lines_.seen[a * n + b] = lines.seen[at];
-                lines_.sampled[a * n + b] = lines.sampled[at];
-            }
+            const size_t row = size_t(first.superfacet[a]) * superfacets;
+            for (size_t b = 0; b < n; ++b)
+                lines_[a * n + b] = {lines.seen[row + first.superfacet[b]], lines.sampled[row + first.superfacet[b]]};
         }
     }
 
@@ -162,7 +160,7 @@ private:
         const double smaller = std::max(1e-9, double(std::min(x.area, y.area)));
         const double length = std::max(1e-9, double(contour.length));
         const double k = double(contour.concavity) / length;
-        const double visible = lines_.sampled[at] > 0 ? double(lines_.seen[at] / lines_.sampled[at]) : 1;
+        const double visible = lines_[at].sampled > 0 ? double(lines_[at].seen / lines_[at].sampled) : 1;
         const double diameters = std::abs(x.weightedDiameter / std::max(1e-9, double(x.area)) -
                                           y.weightedDiameter / std::max(1e-9, double(y.area)));
         const double step = exact::pow(k, 1.2) + 0.32 * exact::pow(std::max(0.0, 1 - visible), 0.336) +
@@ -205,17 +203,24 @@ private:
 
     void addLines(uint32_t a, uint32_t b) {
         const size_t n = regions_.size();
-        for (std::vector<float>* table : {&lines_.seen, &lines_.sampled}) {
-            for (size_t i = 0; i < n; ++i) {
-                (*table)[a * n + i] += (*table)[b * n + i];
-                (*table)[i * n + a] = (*table)[a * n + i];
-            }
+        alive_.erase(std::lower_bound(alive_.begin(), alive_.end(), b));
+        for (const uint32_t i : alive_) {
+            Lines& sum = lines_[a * n + i];
+            sum.seen += lines_[b * n + i].seen;
+            sum.sampled += lines_[b * n + i].sampled;
+            lines_[i * n + a] = sum;
         }
     }
 
+    /// Between two regions; see LinesOfSight.
+    struct Lines {
+        float seen, sampled;
+    };
+
     std::vector<Region> regions_;
     std::vector<uint32_t> group_; ///< empty: all may merge
-    LinesOfSight lines_;          ///< per region
+    std::vector<Lines> lines_;    ///< a row a region
+    std::vector<uint32_t> alive_; ///< regions that are not gone, rising
     std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
     std::vector<Merge> merges_;
 };
