@@ -1,5 +1,6 @@
 #include "perceptual_run.h"
 #include "process_memory.h"
+#include "sdf_peer.h"
 #include "segment_stages.h"
 #include "subjects.h"
 
@@ -8,8 +9,8 @@
 #include <algorithm>
 
 /// Time and memory of the perceptual segmentation on one thread: stage by stage on bundled models of 10,000 to 4
-/// million faces and the dragon, then whole on the Princeton benchmark. Times are of the processor: what a loaded
-/// machine changes least.
+/// million faces and the dragon, then whole on the Princeton benchmark, each model in turn with CGAL's shape diameter
+/// segmentation where that was built. Times are of the processor: what a loaded machine changes least.
 namespace {
 
 using namespace xgc;
@@ -52,23 +53,55 @@ int benchStages(const Flags& flags) {
     return forSubjects(flags, sources, [&](const Subject& subject) { printStages(flags, subject); });
 }
 
-int benchPrinceton(const Flags& flags) {
-    if (flags.data.empty()) return 0;
+/// Of every model, in step.
+struct PrincetonTimes {
     std::vector<double> seconds, faces;
-    std::vector<Source> sources = princetonAll(flags.data);
-    for (Source& source : sources) source.plain = true;
-    const int failed = forSubjects(flags, sources, [&](const Subject& subject) {
-        std::vector<double> runs;
-        for (uint32_t run = 0; run < flags.runs; ++run) runs.push_back(segmentOnce(subject.mesh, 1).seconds);
-        seconds.push_back(median(runs));
-        faces.push_back(double(subject.mesh.faceCount()));
-    });
-    if (seconds.empty()) return failed;
+    std::vector<double> sdfSeconds, ratios; ///< of those that CGAL segmented: its time, and that over ours
+};
+
+void timePrinceton(const Flags& flags, const Source& source, const Subject& subject, const SdfPeer& sdf,
+                   PrincetonTimes& times) {
+    std::vector<double> runs;
+    for (uint32_t run = 0; run < flags.runs; ++run) runs.push_back(segmentOnce(subject.mesh, 1).seconds);
+    times.seconds.push_back(median(runs));
+    times.faces.push_back(double(subject.mesh.faceCount()));
+    const double peer = sdf.isThere() ? sdf.seconds(source.file) : -1;
+    if (peer > 0) {
+        times.sdfSeconds.push_back(peer);
+        times.ratios.push_back(peer / times.seconds.back());
+    }
+    if (!flags.each) return;
+    fmt::print("{:<8} {:>8} faces {:>8.1f} ms", source.name, times.faces.back(), 1e3 * times.seconds.back());
+    if (peer > 0) fmt::print(", CGAL {:>8.1f} ms: {:.1f} times", 1e3 * peer, times.ratios.back());
+    fmt::print("\n");
+}
+
+void printPrinceton(const PrincetonTimes& times, const SdfPeer& sdf) {
     fmt::print("Princeton benchmark: {} models of {:.0f} faces in the mean, {:.1f} ms in the mean, {:.1f} the slowest: "
                "{:.1f} ms for 20,000 faces\n",
-               seconds.size(), mean(faces), 1e3 * mean(seconds), 1e3 * *std::ranges::max_element(seconds),
-               1e3 * mean(seconds) / mean(faces) * 20'000);
-    return failed;
+               times.seconds.size(), mean(times.faces), 1e3 * mean(times.seconds),
+               1e3 * *std::ranges::max_element(times.seconds), 1e3 * mean(times.seconds) / mean(times.faces) * 20'000);
+    if (!sdf.isThere()) {
+        fmt::print("SKIPPED: CGAL's SDF segmentation beside it (peer_sdf was not built: CGAL is missing)\n");
+    } else if (!times.ratios.empty()) {
+        fmt::print("CGAL's SDF segmentation in the same run: {} models, {:.1f} ms in the mean; perceptual is {:.1f} "
+                   "times faster in the mean, {:.1f} in the median, {:.1f} at least\n",
+                   times.ratios.size(), 1e3 * mean(times.sdfSeconds), mean(times.ratios), median(times.ratios),
+                   *std::ranges::min_element(times.ratios));
+    }
+}
+
+int benchPrinceton(const Flags& flags, const SdfPeer& sdf) {
+    if (flags.data.empty()) return 0;
+    PrincetonTimes times;
+    for (Source& source : princetonAll(flags.data)) {
+        source.plain = true;
+        const int failed = forSubjects(
+            flags, {source}, [&](const Subject& subject) { timePrinceton(flags, source, subject, sdf, times); });
+        if (failed != 0) return failed;
+    }
+    if (!times.seconds.empty()) printPrinceton(times, sdf);
+    return 0;
 }
 
 } // namespace
@@ -80,6 +113,6 @@ int main(int argc, char** argv) {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     int failed = 0;
     if (flags.wants("stages")) failed = benchStages(flags);
-    if (failed == 0 && flags.wants("princeton")) failed = benchPrinceton(flags);
+    if (failed == 0 && flags.wants("princeton")) failed = benchPrinceton(flags, SdfPeer(argv[0]));
     return failed;
 }

@@ -3,9 +3,9 @@
 #include <CGAL/boost/graph/IO/OFF.h>
 #include <CGAL/mesh_segmentation.h>
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -13,8 +13,8 @@
 #include <vector>
 
 /// CGAL's segmentation by the shape diameter function, for `xgc eval psb --labels sdf=OUT`: for every N.off of a folder
-/// the labels OUT/N.seg, and in OUT/seconds.txt what each took (values, clusters and cut, without reading and writing).
-/// One thread. A mesh that CGAL refuses has one part.
+/// the labels OUT/N.seg, and in OUT/seconds.txt what each took of the processor (values, clusters and cut, without
+/// reading and writing). One thread. A mesh that CGAL refuses has one part.
 ///
 ///     peer_sdf OFF OUT [--clusters N] [--smoothing L]      (CGAL's defaults: 5 and .26)
 namespace {
@@ -79,9 +79,9 @@ int run(const std::filesystem::path& off, const std::filesystem::path& out, cons
         double seconds = 0;
         if (CGAL::IO::read_OFF(file.string(), mesh) && mesh.number_of_faces() == faces &&
             CGAL::is_triangle_mesh(mesh)) {
-            const auto start = std::chrono::steady_clock::now();
+            const std::clock_t start = std::clock();
             labels = segment(mesh, settings);
-            seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+            seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
         } else {
             std::fprintf(stderr, "peer_sdf: %s: refused by CGAL; one part\n", file.c_str());
         }
