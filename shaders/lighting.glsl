@@ -77,7 +77,10 @@ vec3 levelColor(float levelFraction) {
 }
 
 Surface surfaceOf(DrawRecord draw, uint mode) {
-    if (mode == kModeParts) return Surface(partColor(draw.partColor), vec3(0), 0.0, 0.7);
+    if (mode == kModeParts) {
+        const vec3 color = draw.partColor < kPartColorCount ? partColor(draw.partColor) : vec3(0.45);
+        return Surface(color, vec3(0), 0.0, 0.7);
+    }
     if (mode == kModeLevels) return Surface(levelColor(draw.levelFraction), vec3(0), 0.0, 0.8);
     if (mode == kModeWire) return Surface(vec3(0.56), vec3(0), 0.0, 0.9);
     const MaterialRecord m = Materials(push.materials).at[draw.material];

@@ -51,12 +51,15 @@ struct InstanceRecord {
     uint reserved;
 };
 
-/// A draw: what a patch looks like beside its triangles.
+/// A draw: what its triangles look like, and where its instances and indices lie.
 struct DrawRecord {
-    uint instance;
+    uint firstInstance; ///< of its ids in PushConstants::instanceIds
     uint material;
-    uint partColor;      ///< below kPartColorCount, unlike those of adjacent parts
+    uint partColor;      ///< below kPartColorCount, unlike those of adjacent parts; kPartColorCount: of several parts
     float levelFraction; ///< level / the asset's coarsest
+    uint vertexOffset;   ///< row that index 0 stands for
+    uint indexBytes;     ///< 2 or 4
+    uint reserved0, reserved1;
 };
 
 struct MaterialRecord {
@@ -75,6 +78,7 @@ struct PushConstants {
     Address draws;
     Address materials;
     Address indices;
+    Address instanceIds; ///< a uint each
     uint firstDraw; ///< of the batch: gl_DrawID counts from it
     uint reserved;
 };
@@ -82,9 +86,9 @@ struct PushConstants {
 #ifdef __cplusplus
 static_assert(sizeof(ViewRecord) == 160);
 static_assert(sizeof(InstanceRecord) == 80);
-static_assert(sizeof(DrawRecord) == 16);
+static_assert(sizeof(DrawRecord) == 32);
 static_assert(sizeof(MaterialRecord) == 48);
-static_assert(sizeof(PushConstants) == 48);
+static_assert(sizeof(PushConstants) == 56);
 } // namespace xgc::shader
 #endif
 

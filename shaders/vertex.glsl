@@ -28,7 +28,7 @@ vec3 turnNormal(InstanceRecord instance, vec3 n) {
 }
 
 void shadeVertex(uint row, uint draw, uint instanceInDraw) {
-    const uint id = Draws(push.draws).at[draw].instance + instanceInDraw;
+    const uint id = Words(push.instanceIds).at[Draws(push.draws).at[draw].firstInstance + instanceInDraw];
     const InstanceRecord instance = Instances(push.instances).at[id];
     Floats f = Floats(instance.positions);
     const vec4 local = vec4(f.at[3 * row], f.at[3 * row + 1], f.at[3 * row + 2], 1);

@@ -8,8 +8,17 @@
 
 layout(location = 4) out vec3 outCorner;
 
+uint fetchIndex(uint indexBytes, uint i) {
+    if (indexBytes == 4) return Words(push.indices).at[i];
+    const uint pair = Words(push.indices).at[i / 2];
+    return i % 2 == 0 ? pair & 0xffff : pair >> 16;
+}
+
 void main() {
     const uint corner = (gl_VertexIndex - gl_BaseVertex) % 3;
     outCorner = vec3(corner == 0, corner == 1, corner == 2);
-    shadeVertex(Words(push.indices).at[gl_VertexIndex], push.firstDraw + gl_DrawID, gl_InstanceIndex - gl_BaseInstance);
+    const uint draw = push.firstDraw + gl_DrawID;
+    const DrawRecord record = Draws(push.draws).at[draw];
+    shadeVertex(fetchIndex(record.indexBytes, gl_VertexIndex) + record.vertexOffset, draw,
+                gl_InstanceIndex - gl_BaseInstance);
 }

@@ -1,482 +1,443 @@
-#include "../runtime/src/range_allocator.h"
 #include "counted_allocations.h"
 #include "meshes/patched_torus.h"
 
 #include <xgc/draw_list.h>
 
 #include <doctest/doctest.h>
+#include <glm/gtc/matrix_transform.hpp>
 
-#include <algorithm>
 #include <array>
 #include <map>
 #include <random>
-#include <span>
-#include <string>
+#include <set>
 
 namespace {
 
-constexpr uint32_t kPoison = 0xdeadbeef;
-constexpr uint32_t kGuard = 0xcafecafe;
-
-/// What a renderer with an index arena does, and more: it fails where a copy lands in memory that a frame in flight
-/// draws, and poisons all that is neither drawn nor in flight.
-class FakeGpu {
-public:
-    FakeGpu(uint32_t indexCapacity, uint32_t framesInFlight)
-        : arena_(indexCapacity, kPoison), lastDrawn_(indexCapacity, 0), framesInFlight_(framesInFlight) {}
-
-    void frame(const xgc::DrawList& list, std::span<const uint32_t> staging) {
-        ++frame_;
-        uint32_t previousEnd = 0, clashes = 0;
-        for (const xgc::CopyRange& c : list.copies()) {
-            CHECK(c.count > 0);
-            CHECK(c.staging == previousEnd); // staging has no gaps
-            previousEnd = c.staging + c.count;
-            for (uint32_t i = 0; i < c.count; ++i) {
-                clashes += inFlight(c.arena + i);
-                arena_[c.arena + i] = staging[c.staging + i];
-            }
-        }
-        CHECK(clashes == 0);
-        CHECK(list.stats().uploadBytes == 4 * previousEnd);
-        uint32_t overlaps = 0;
-        for (const xgc::DrawCommand& d : list.draws()) {
-            for (uint32_t i = d.firstIndex; i < d.firstIndex + d.indexCount; ++i) {
-                overlaps += lastDrawn_[i] == frame_;
-                lastDrawn_[i] = frame_;
-            }
-        }
-        CHECK(overlaps == 0);
-        for (uint32_t i = 0; i < arena_.size(); ++i) {
-            if (lastDrawn_[i] != frame_ && !inFlight(i)) arena_[i] = kPoison;
-        }
-    }
-    std::span<const uint32_t> drawn(const xgc::DrawCommand& d) const {
-        return std::span(arena_).subspan(d.firstIndex, d.indexCount);
-    }
-
-private:
-    /// Drawn in a frame that the renderer has not waited for when it begins the current one.
-    bool inFlight(uint32_t i) const { return lastDrawn_[i] > 0 && lastDrawn_[i] + framesInFlight_ > frame_; }
-
-    std::vector<uint32_t> arena_;
-    std::vector<uint64_t> lastDrawn_;
-    uint32_t framesInFlight_;
-    uint64_t frame_ = 0;
-};
-
-/// An instance as the test believes it to be.
-struct Believed {
-    const xgc::AssetView* asset = nullptr;
-    int32_t vertexOffset = 0;
-    uint32_t firstMaterial = 0;
-    std::vector<uint8_t> levels; ///< empty: not drawn
-};
-
-using Scene = std::map<uint32_t, Believed>;
-
-std::vector<uint32_t> indicesOf(const xgc::AssetView& asset, uint32_t patch, xgc::Levels levels) {
-    std::vector<uint32_t> scratch(xgc::scratchCapacity(asset)), out(xgc::indexCapacity(asset, patch, levels));
-    out.resize(xgc::buildIndices(asset, patch, levels, scratch, out));
-    return out;
-}
-
-/// A patch that was built in another state with the same triangles may have them in another order.
-std::vector<std::array<uint32_t, 3>> sortedTriangles(std::span<const uint32_t> indices) {
-    std::vector<std::array<uint32_t, 3>> triangles;
-    for (size_t i = 0; i + 2 < indices.size(); i += 3) {
-        triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
-        auto& t = triangles.back();
-        std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-    }
-    std::sort(triangles.begin(), triangles.end());
-    return triangles;
-}
-
-/// The draws are the scene's: each patch that has triangles once, with its indices, in batches by material.
-void checkDraws(const xgc::DrawList& list, const FakeGpu& gpu, const Scene& scene) {
-    std::map<std::pair<uint32_t, uint32_t>, uint32_t> drawOf;
-    REQUIRE(list.draws().size() == list.drawPatches().size());
-    for (uint32_t i = 0; i < list.draws().size(); ++i) {
-        const xgc::DrawPatch id = list.drawPatches()[i];
-        CHECK(list.draws()[i].firstInstance == id.instance);
-        CHECK(list.draws()[i].instanceCount == 1);
-        CHECK(drawOf.emplace(std::pair(id.instance, id.patch), i).second);
-    }
-    uint32_t triangles = 0;
-    size_t matched = 0;
-    std::map<uint32_t, uint32_t> materialOfDraw;
-    for (const auto& [id, believed] : scene) {
-        CHECK(std::ranges::equal(list.levels(id), believed.levels));
-        for (uint32_t p = 0; p < believed.levels.size(); ++p) {
-            const std::vector<uint32_t> truth = indicesOf(*believed.asset, p, believed.levels);
-            const auto found = drawOf.find({id, p});
-            CHECK((found == drawOf.end()) == truth.empty());
-            if (found == drawOf.end()) continue;
-            ++matched;
-            const xgc::DrawCommand& draw = list.draws()[found->second];
-            CHECK(sortedTriangles(gpu.drawn(draw)) == sortedTriangles(truth));
-            CHECK(draw.vertexOffset == believed.vertexOffset);
-            materialOfDraw[found->second] = believed.firstMaterial + believed.asset->patches[p].material;
-            triangles += uint32_t(truth.size()) / 3;
-        }
-    }
-    CHECK(matched == drawOf.size());
-    CHECK(list.stats().triangles == triangles);
-    uint32_t next = 0, lastMaterial = 0;
-    for (const xgc::DrawBatch& batch : list.batches()) {
-        CHECK(batch.firstDraw == next);
-        CHECK(batch.drawCount > 0);
-        if (next > 0) CHECK(batch.material > lastMaterial);
-        lastMaterial = batch.material;
-        for (; next < batch.firstDraw + batch.drawCount; ++next) CHECK(materialOfDraw[next] == batch.material);
-    }
-    CHECK(next == list.draws().size());
-}
+using namespace xgc;
 
 class Random {
 public:
     explicit Random(uint32_t seed) : engine_(seed) {}
     uint32_t below(uint32_t n) { return uint32_t(engine_() % n); }
-    std::vector<uint8_t> levels(const xgc::AssetView& asset) {
-        std::vector<uint8_t> l(asset.patchCount());
-        for (uint8_t& x : l) x = uint8_t(below(asset.levelCount()));
-        return l;
+    float between(float a, float b) { return a + (b - a) * float(engine_() % 100001u) / 100000.0f; }
+    glm::vec3 point(float size) { return {between(-size, size), between(-size, size), between(-size, size)}; }
+    Placement placement(float size) { return makePlacement(glm::translate(glm::mat4(1), point(size))); }
+
+private:
+    std::mt19937 engine_;
+};
+
+/// What a renderer with an index arena does, and more: it fails where a copy lands in memory that a frame in flight
+/// draws, and poisons all that is not in flight and that no list holds.
+class FakeGpu {
+public:
+    FakeGpu(uint32_t arenaBytes, uint32_t framesInFlight)
+        : arena_(arenaBytes, std::byte(0xcd)), lastDrawn_(arenaBytes, 0), framesInFlight_(framesInFlight) {}
+
+    void copy(const IndexCache& cache, std::span<const std::byte> staging) {
+        ++frame_;
+        uint32_t clashes = 0;
+        for (const CopyRange& c : cache.copies()) {
+            for (uint32_t i = 0; i < c.bytes; ++i) {
+                clashes += lastDrawn_[c.arena + i] > 0 && lastDrawn_[c.arena + i] + framesInFlight_ > frame_;
+                arena_[c.arena + i] = staging[c.staging + i];
+            }
+        }
+        CHECK(clashes == 0);
+    }
+    /// The rows of a draw, as its asset numbers them.
+    std::vector<uint32_t> draw(const DrawCommand& command, uint32_t indexBytes, int32_t assetOffset) {
+        std::vector<uint32_t> rows;
+        for (uint32_t i = 0; i < command.indexCount; ++i) {
+            const size_t at = size_t(command.firstIndex + i) * indexBytes;
+            uint32_t index = 0;
+            std::memcpy(&index, arena_.data() + at, indexBytes);
+            for (uint32_t b = 0; b < indexBytes; ++b) lastDrawn_[at + b] = frame_;
+            rows.push_back(uint32_t(int32_t(index) + command.vertexOffset - assetOffset));
+        }
+        return rows;
     }
 
 private:
-    std::minstd_rand engine_;
+    std::vector<std::byte> arena_;
+    std::vector<uint64_t> lastDrawn_;
+    uint32_t framesInFlight_;
+    uint64_t frame_ = 0;
 };
 
-/// Two assets of different shape.
-struct Assets {
-    xgc::test::OpenAsset small = xgc::test::openBuilt(xgc::test::patchedTorus({.patches = 3, .levels = 2}));
-    xgc::test::OpenAsset large =
-        xgc::test::openBuilt(xgc::test::patchedTorus({.patches = 4, .levels = 3, .materials = 3, .repeatedLevels = 1}));
-    const xgc::AssetView& pick(uint32_t i) const { return i % 2 ? small.view : large.view; }
-};
+using Triangles = std::vector<std::array<uint32_t, 3>>;
 
-uint32_t faces(const xgc::AssetView& asset) {
-    return asset.record->faceCount;
-}
-
-/// Sets levels and keeps the belief; where the call defers, checks that nothing changed.
-bool setLevels(xgc::DrawList& list, uint32_t id, Believed& believed, const std::vector<uint8_t>& levels) {
-    const xgc::Status status = list.setLevels(id, levels);
-    if (status.ok()) {
-        believed.levels = levels;
-        return true;
+/// Equal sets of triangles may come in another order.
+Triangles sorted(std::span<const uint32_t> indices) {
+    Triangles triangles;
+    for (size_t i = 0; i + 2 < indices.size(); i += 3) {
+        std::array<uint32_t, 3> t = {indices[i], indices[i + 1], indices[i + 2]};
+        std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+        triangles.push_back(t);
     }
-    CHECK(status.code == xgc::StatusCode::outOfCapacity);
-    CHECK(status.element > 0);
-    CHECK(std::ranges::equal(list.levels(id), believed.levels));
-    return false;
+    std::sort(triangles.begin(), triangles.end());
+    return triangles;
 }
 
-/// Hundreds of frames of random additions, removals and changes; returns how many changes were deferred.
-uint32_t randomRun(const Assets& assets, xgc::DrawListConfig config, uint32_t stagingSize, uint32_t seed) {
-    Random random(seed);
-    xgc::DrawList list;
-    REQUIRE(list.create(config).ok());
-    FakeGpu gpu(config.indexCapacity, config.framesInFlight);
+void append(const AssetView& asset, uint32_t patch, Levels levels, std::vector<uint32_t>& to) {
+    std::vector<uint32_t> scratch(scratchCapacity(asset)), out(indexCapacity(asset, patch, levels));
+    out.resize(buildIndices(asset, patch, levels, scratch, out));
+    to.insert(to.end(), out.begin(), out.end());
+}
+
+struct Assets {
+    test::OpenAsset small = test::openBuilt(test::patchedTorus({.patches = 3, .levels = 2}));
+    test::OpenAsset large =
+        test::openBuilt(test::patchedTorus({.patches = 4, .levels = 3, .materials = 3, .repeatedLevels = 1}));
+    Assets() {
+        REQUIRE(small.failure == "");
+        REQUIRE(large.failure == "");
+    }
+};
+
+/// A scene, views of it, and what a renderer keeps.
+struct Stage {
+    static constexpr uint32_t kFramesInFlight = 2;
+    SceneConfig config{.assetCapacity = 4, .instanceCapacity = 24, .assetPatchCapacity = 64, .patchCapacity = 24 * 16};
     Scene scene;
-    std::vector<uint32_t> staging(stagingSize + 1, kGuard);
-    uint32_t deferred = 0;
-    for (int frame = 0; frame < 250; ++frame) {
-        list.beginFrame(std::span(staging).first(stagingSize));
-        if (random.below(4) == 0) {
-            Believed b{&assets.pick(random.below(2)), int32_t(random.below(1000)), random.below(4), {}};
-            uint32_t id = 77;
-            const xgc::Status status = list.addInstance({b.asset, b.vertexOffset, b.firstMaterial}, id);
-            if (status.ok())
-                CHECK(scene.emplace(id, b).second);
-            else
-                CHECK(id == 77);
+    IndexCache cache;
+    std::vector<Selection> selections;
+    std::vector<DrawList> lists;
+    FakeGpu gpu;
+    std::vector<std::byte> staging;
+
+    Stage(uint32_t views, uint32_t arenaBytes, uint32_t stagingBytes, uint32_t wholeTriangles = 10000)
+        : gpu(arenaBytes, kFramesInFlight) {
+        REQUIRE(scene.create(config).ok());
+        REQUIRE(
+            cache.create({.arenaBytes = arenaBytes, .rangeCapacity = 4096, .framesInFlight = kFramesInFlight}).ok());
+        for (uint32_t i = 0; i < views; ++i) {
+            REQUIRE(selections.emplace_back().create(config).ok());
+            REQUIRE(lists.emplace_back()
+                        .create({.scene = config, .materialCapacity = 16, .wholeTriangles = wholeTriangles})
+                        .ok());
         }
-        if (random.below(12) == 0 && !scene.empty()) {
-            const auto gone = std::next(scene.begin(), random.below(uint32_t(scene.size())));
-            list.removeInstance(gone->first);
-            scene.erase(gone);
-        }
-        uint32_t refused = 0, changed = 0, needed = 0;
-        for (auto& [id, b] : scene) {
-            if (random.below(3) == 0) continue;
-            std::vector<uint8_t> levels = random.levels(*b.asset);
-            if (!b.levels.empty() && random.below(2)) { // a small change
-                const std::vector<uint8_t> wild = levels;
-                levels = b.levels;
-                for (int k = 0; k < 2; ++k) {
-                    const uint32_t p = random.below(uint32_t(levels.size()));
-                    levels[p] = wild[p];
+        staging.resize(stagingBytes);
+    }
+    uint32_t add(const AssetView& asset, int32_t vertexOffset, uint32_t firstMaterial) {
+        uint32_t id = 0;
+        REQUIRE(scene.addAsset({&asset, vertexOffset, firstMaterial}, id).ok());
+        REQUIRE(cache.addAsset(id, asset).ok());
+        return id;
+    }
+    uint32_t place(uint32_t asset, const Placement& placement) {
+        uint32_t id = 0;
+        REQUIRE(scene.addInstance(asset, placement, id).ok());
+        return id;
+    }
+    void frame() {
+        cache.beginFrame(staging);
+        for (size_t v = 0; v < lists.size(); ++v) lists[v].update(scene, selections[v], cache);
+        cache.endFrame();
+        gpu.copy(cache, staging);
+    }
+    const AssetView& assetOf(uint32_t id) const { return *scene.asset(scene.assetOf(id)).asset; }
+};
+
+/// What is drawn of each instance is what buildIndices writes for the levels that it is drawn at, in batches that
+/// tell the truth. Returns, per instance, the patches that are drawn.
+std::map<uint32_t, std::set<uint32_t>> checkDraws(Stage& stage, const DrawList& list) {
+    std::map<uint32_t, std::set<uint32_t>> patches;
+    std::map<uint32_t, std::vector<uint32_t>> drawn;
+    REQUIRE(list.sources().size() == list.draws().size());
+    uint32_t next = 0, lastKey = 0;
+    uint64_t triangles = 0;
+    for (const DrawBatch& batch : list.batches()) {
+        CHECK(batch.firstDraw == next);
+        CHECK(batch.drawCount > 0);
+        const uint32_t key = batch.material * 8 + batch.indexBytes;
+        if (next > 0) CHECK(key > lastKey);
+        lastKey = key;
+        for (; next < batch.firstDraw + batch.drawCount; ++next) {
+            const DrawCommand& command = list.draws()[next];
+            const DrawSource& source = list.sources()[next];
+            const AssetDesc& asset = stage.scene.asset(source.asset);
+            const std::vector<uint32_t> rows = stage.gpu.draw(command, batch.indexBytes, asset.vertexOffset);
+            triangles += uint64_t(command.indexCount / 3) * command.instanceCount;
+            for (uint32_t i = 0; i < command.instanceCount; ++i) {
+                const uint32_t id = list.drawInstances()[command.firstInstance + i];
+                REQUIRE(stage.scene.assetOf(id) == source.asset);
+                drawn[id].insert(drawn[id].end(), rows.begin(), rows.end());
+                for (uint32_t p = 0; p < asset.asset->patchCount(); ++p) {
+                    if (source.patch != format::kNone && source.patch != p) continue;
+                    if (asset.firstMaterial + asset.asset->patches[p].material != batch.material) continue;
+                    CHECK(patches[id].insert(p).second);
                 }
             }
-            const std::vector<uint8_t> before = b.levels;
-            if (!setLevels(list, id, b, levels)) {
-                ++refused;
-                continue;
-            }
-            for (uint32_t p = 0; p < levels.size(); ++p) {
-                changed += before.empty() || before[p] != levels[p];
-                needed += before.empty() || xgc::needsRebuild(*b.asset, p, before, levels);
+        }
+    }
+    CHECK(next == list.draws().size());
+    CHECK(list.stats().triangles == triangles);
+    for (uint32_t id = 0; id < stage.scene.instanceEnd(); ++id) {
+        if (!stage.scene.hasInstance(id)) {
+            CHECK(drawn.count(id) == 0);
+            continue;
+        }
+        const AssetView& asset = stage.assetOf(id);
+        std::vector<uint32_t> truth;
+        if (list.kind(id) == InstanceKind::whole) {
+            std::vector<uint8_t> levels(asset.patchCount());
+            stage.scene.wholeLevels(stage.scene.assetOf(id), list.wholeState(id), levels);
+            for (uint32_t p = 0; p < asset.patchCount(); ++p) append(asset, p, levels, truth);
+        } else if (list.kind(id) == InstanceKind::mixed) {
+            for (const uint32_t p : patches[id]) append(asset, p, list.levels(id), truth);
+        }
+        CHECK(sorted(drawn[id]) == sorted(truth));
+    }
+    return patches;
+}
+
+/// True where an instance is drawn as selected: the same levels, and exactly the visible patches.
+bool followed(const Stage& stage, const Selection& selection, const DrawList& list, uint32_t id,
+              const std::set<uint32_t>& drawn) {
+    if (selection.kind(id) == InstanceKind::whole && list.kind(id) == InstanceKind::mixed) { // too large for one range
+        std::vector<uint8_t> levels(list.levels(id).size());
+        stage.scene.wholeLevels(stage.scene.assetOf(id), selection.wholeState(id), levels);
+        return drawn.size() == levels.size() && std::ranges::equal(levels, list.levels(id));
+    }
+    if (list.kind(id) != selection.kind(id)) return false;
+    if (list.kind(id) == InstanceKind::whole) return list.wholeState(id) == selection.wholeState(id);
+    if (list.kind(id) == InstanceKind::culled) return true;
+    for (uint32_t p = 0; p < stage.assetOf(id).patchCount(); ++p) {
+        if (bool(selection.visible(id)[p]) != bool(drawn.count(p))) return false;
+    }
+    return std::ranges::equal(list.levels(id), selection.levels(id));
+}
+
+/// No patch that is in sight is missing.
+void checkNoHole(const Stage& stage, const Selection& selection, const DrawList& list, uint32_t id,
+                 const std::set<uint32_t>& drawn) {
+    const uint32_t count = stage.assetOf(id).patchCount();
+    if (selection.kind(id) == InstanceKind::culled) return;
+    CHECK(list.kind(id) != InstanceKind::culled);
+    for (uint32_t p = 0; p < count; ++p) {
+        const bool needed = selection.kind(id) == InstanceKind::whole || selection.visible(id)[p];
+        if (needed) CHECK(drawn.count(p) == 1);
+    }
+}
+
+SelectionDesc wandering(Random& random) {
+    SelectionDesc desc;
+    const glm::vec3 eye = random.point(20), target = random.point(20);
+    desc.view = makeView(eye, 1, 1080);
+    desc.view.nearest = 0.1f;
+    desc.pixels = random.between(0.5f, 30);
+    desc.hysteresis = 0.05f;
+    desc.frustum =
+        makeFrustum(glm::perspectiveRH_ZO(1.0f, 1.5f, 0.1f, 100.0f) * glm::lookAt(eye, target, glm::vec3(0, 1, 0)));
+    desc.cullBackfaces = random.below(2) == 0;
+    return desc;
+}
+
+/// Hundreds of frames of views, levels and instances that come and go; returns how often an instance was deferred.
+uint64_t randomRun(const Assets& assets, uint32_t arenaBytes, uint32_t stagingBytes, uint32_t seed, bool roomy) {
+    Random random(seed);
+    Stage stage(2, arenaBytes, stagingBytes, stagingBytes / 12);
+    const uint32_t kinds[] = {stage.add(assets.small.view, 0, 0), stage.add(assets.large.view, 5000, 2)};
+    std::set<uint32_t> ids, seen;
+    uint64_t deferred = 0, wholes = 0, mixeds = 0;
+    for (int frame = 0; frame < 300; ++frame) {
+        if (random.below(4) == 0 && ids.size() < 20) {
+            const uint32_t id = stage.place(kinds[random.below(2)], random.placement(15));
+            ids.insert(id);
+            seen.erase(id);
+        }
+        if (random.below(15) == 0 && !ids.empty()) {
+            const uint32_t gone = *std::next(ids.begin(), random.below(uint32_t(ids.size())));
+            stage.scene.removeInstance(gone);
+            ids.erase(gone);
+        }
+        for (Selection& selection : stage.selections) {
+            if (random.below(3) > 0) selection.update(stage.scene, wandering(random));
+            for (const uint32_t id : ids) {
+                if (random.below(8) > 0) continue;
+                std::vector<uint8_t> own(stage.assetOf(id).patchCount());
+                for (uint8_t& l : own) l = uint8_t(random.below(stage.assetOf(id).levelCount()));
+                selection.set(stage.scene, id, own);
             }
         }
-        list.endFrame();
-        CHECK(list.stats().deferredInstances == refused);
-        CHECK(list.stats().patchesChanged == changed);
-        CHECK(list.stats().patchesRebuilt == needed); // and nothing else
-        gpu.frame(list, staging);
-        checkDraws(list, gpu, scene);
-        CHECK(staging.back() == kGuard);
-        deferred += refused;
+        stage.frame();
+        for (size_t v = 0; v < stage.lists.size(); ++v) {
+            auto drawn = checkDraws(stage, stage.lists[v]);
+            uint32_t late = 0;
+            for (const uint32_t id : ids) {
+                checkNoHole(stage, stage.selections[v], stage.lists[v], id, drawn[id]);
+                late += !followed(stage, stage.selections[v], stage.lists[v], id, drawn[id]);
+                wholes += stage.lists[v].kind(id) == InstanceKind::whole;
+                mixeds += stage.lists[v].kind(id) == InstanceKind::mixed;
+            }
+            CHECK(stage.lists[v].stats().deferredInstances == late);
+            CHECK(stage.lists[v].refusal().ok() == (late == 0));
+            if (roomy) CHECK(late == 0);
+            deferred += late;
+        }
     }
+    CHECK(wholes > 100);
+    CHECK(mixeds > 100);
+    for (DrawList& list : stage.lists) list.clear(stage.cache);
+    CHECK(stage.cache.stats().heldRanges == 0);
     return deferred;
 }
 
+constexpr uint32_t kRoomy = 8u << 20;
+
 } // namespace
 
-TEST_CASE("after any sequence of changes the arena holds each patch's indices, in flight or not") {
+TEST_CASE("whatever comes and goes, each instance is drawn in one state, with nothing in sight missing") {
     const Assets assets;
-    REQUIRE(assets.small.failure == "");
-    REQUIRE(assets.large.failure == "");
-    for (const uint32_t framesInFlight : {1u, 2u, 3u}) {
-        const xgc::DrawListConfig roomy{.instanceCapacity = 12,
-                                        .patchCapacity = 12 * 16,
-                                        .materialCapacity = 8,
-                                        .indexCapacity = 12 * 3 * faces(assets.large.view) * 6,
-                                        .framesInFlight = framesInFlight};
-        CHECK(randomRun(assets, roomy, 12 * 3 * faces(assets.large.view), framesInFlight) == 0);
-        // Too little of everything: changes wait, and nothing breaks.
-        xgc::DrawListConfig tight = roomy;
-        tight.patchCapacity = 100;
-        tight.indexCapacity = 10 * 3 * faces(assets.large.view);
-        CHECK(randomRun(assets, tight, 3 * faces(assets.large.view) + 100, framesInFlight) > 20);
+    for (const uint32_t seed : {1u, 2u, 3u}) {
+        CHECK(randomRun(assets, kRoomy, kRoomy, seed, true) == 0);
+        // A cap of less than some instances need at once: changes come in pieces.
+        CHECK(randomRun(assets, kRoomy, 12 * 700, seed, false) > 100);
     }
 }
 
-TEST_CASE("full staging defers the whole instance, and the next frame takes it") {
+TEST_CASE("under a cap of uploads every instance comes to what was selected, if that stays") {
     const Assets assets;
-    REQUIRE(assets.large.failure == "");
-    const xgc::AssetView& asset = assets.large.view;
-    xgc::DrawList list;
-    REQUIRE(list.create({.instanceCapacity = 2, .materialCapacity = 8}).ok());
-    uint32_t a = 0, b = 0;
-    REQUIRE(list.addInstance({&asset, 0, 0}, a).ok());
-    REQUIRE(list.addInstance({&asset, 0, 0}, b).ok());
-    std::vector<uint32_t> staging(3 * faces(asset));
-    const std::vector<uint8_t> fine(asset.patchCount(), 0);
-
-    list.beginFrame(std::span(staging).first(staging.size() - 1));
-    const xgc::Status never = list.setLevels(a, fine);
-    CHECK(never.code == xgc::StatusCode::outOfCapacity);
-    CHECK(never.element == staging.size()); // would do
-    list.endFrame();
-    CHECK(list.draws().empty());
-
-    list.beginFrame(staging);
-    CHECK(list.setLevels(a, fine).ok());
-    const xgc::Status later = list.setLevels(b, fine);
-    CHECK(later.code == xgc::StatusCode::outOfCapacity);
-    CHECK(std::string(later.message) != never.message);
-    list.endFrame();
-    CHECK(list.stats().deferredInstances == 1);
-    CHECK(list.stats().triangles == faces(asset));
-    CHECK(list.copies().size() == 1); // adjacent ranges are one copy
-
-    list.beginFrame(staging);
-    CHECK(list.setLevels(b, fine).ok());
-    list.endFrame();
-    CHECK(list.stats().deferredInstances == 0);
-    CHECK(list.stats().triangles == 2 * faces(asset));
-}
-
-TEST_CASE("a full arena defers; memory that another instance gave up serves framesInFlight frames later") {
-    const Assets assets;
-    REQUIRE(assets.large.failure == "");
-    const xgc::AssetView& asset = assets.large.view;
-    const uint32_t whole = 3 * faces(asset);
-    for (const uint32_t framesInFlight : {1u, 2u, 3u}) {
-        xgc::DrawList list;
-        REQUIRE(list.create({.instanceCapacity = 2,
-                             .materialCapacity = 8,
-                             .indexCapacity = whole + whole / 2,
-                             .framesInFlight = framesInFlight})
-                    .ok());
-        uint32_t a = 0, b = 0;
-        REQUIRE(list.addInstance({&asset, 0, 0}, a).ok());
-        REQUIRE(list.addInstance({&asset, 0, 0}, b).ok());
-        std::vector<uint32_t> staging(whole);
-        const std::vector<uint8_t> fine(asset.patchCount(), 0), coarse(asset.patchCount(), 3);
-        const auto frame = [&](uint32_t id, const std::vector<uint8_t>& levels) {
-            list.beginFrame(staging);
-            const bool ok = list.setLevels(id, levels).ok();
-            list.endFrame();
-            return ok;
-        };
-        CHECK(frame(a, fine));
-        CHECK_FALSE(frame(b, fine));
-        CHECK(list.levels(b).empty());
-        CHECK(frame(a, coarse));
-        for (uint32_t i = 1; i < framesInFlight; ++i) CHECK_FALSE(frame(b, fine));
-        CHECK(frame(b, fine));
-        list.removeInstance(b);
-        CHECK(list.draws().size() == 2 * asset.patchCount()); // what was closed stays
-        CHECK(frame(a, coarse));
-        CHECK(list.stats().triangles == list.draws().size() * 2);
-    }
-}
-
-TEST_CASE("frames, additions and removals allocate nothing") {
-    const Assets assets;
-    REQUIRE(assets.large.failure == "");
-    const xgc::AssetView& asset = assets.large.view;
-    xgc::DrawList list;
-    const uint64_t beforeCreate = xgc::test::allocations;
-    REQUIRE(list.create({.instanceCapacity = 4, .materialCapacity = 8}).ok());
-    CHECK(xgc::test::allocations > beforeCreate); // the counter counts
+    Stage stage(1, kRoomy, 12 * 700, 700);
+    const uint32_t kind = stage.add(assets.large.view, 0, 0);
     Random random(5);
-    std::vector<std::vector<uint8_t>> states;
-    for (int i = 0; i < 32; ++i) states.push_back(random.levels(asset));
-    std::vector<uint32_t> staging(4 * 3 * faces(asset));
-    bool ok = true;
-    const uint64_t before = xgc::test::allocations;
-    for (uint32_t frame = 0; frame < 200; ++frame) {
-        uint32_t id = 0;
-        ok &= list.addInstance({&asset, 0, 0}, id).ok();
-        list.beginFrame(staging);
-        ok &= list.setLevels(id, states[frame % 32]).ok();
-        ok &= list.setLevels(id, states[(frame + 7) % 32]).ok();
-        list.endFrame();
-        ok &= list.stats().triangles > 0 && !list.draws().empty();
-        list.removeInstance(id);
+    std::vector<uint32_t> ids;
+    for (int i = 0; i < 6; ++i) ids.push_back(stage.place(kind, random.placement(5)));
+    for (int round = 0; round < 4; ++round) {
+        SelectionDesc desc = wandering(random);
+        desc.frustum = {};
+        desc.pixels = round % 2 ? 0 : 20; // all in full, then coarse again
+        stage.selections[0].update(stage.scene, desc);
+        uint32_t frames = 0;
+        for (bool late = true; late && frames < 200; ++frames) {
+            stage.frame();
+            auto drawn = checkDraws(stage, stage.lists[0]);
+            late = false;
+            for (const uint32_t id : ids) {
+                checkNoHole(stage, stage.selections[0], stage.lists[0], id, drawn[id]);
+                late |= !followed(stage, stage.selections[0], stage.lists[0], id, drawn[id]);
+            }
+            CHECK(stage.cache.stats().uploadBytes <= stage.staging.size());
+        }
+        CHECK(frames < 200);
+        if (round == 1) CHECK(frames > 3); // it did take several
     }
-    CHECK(xgc::test::allocations == before);
-    CHECK(ok);
+}
+
+TEST_CASE("instances of an asset at one level are one draw a material") {
+    const Assets assets;
+    Stage stage(1, kRoomy, kRoomy);
+    const AssetView& asset = assets.large.view;
+    const uint32_t kind = stage.add(asset, 0, 0);
+    for (int i = 0; i < 20; ++i) {
+        stage.place(kind, makePlacement(glm::translate(glm::mat4(1), glm::vec3(i % 2 ? 30 : 3000, 0, 0))));
+    }
+    SelectionDesc desc;
+    desc.view = makeView({0, 0, 0}, 1, 1080);
+    stage.selections[0].update(stage.scene, desc);
+    stage.frame();
+    checkDraws(stage, stage.lists[0]);
+    CHECK(stage.selections[0].wholeState(0) != stage.selections[0].wholeState(1));
+    CHECK(stage.lists[0].draws().size() == 2 * asset.materials.size());
+    for (const DrawCommand& draw : stage.lists[0].draws()) CHECK(draw.instanceCount == 10);
+    CHECK(stage.lists[0].draws()[0].firstInstance != stage.lists[0].draws()[1].firstInstance);
+    CHECK(stage.lists[0].stats().instances == 20);
+}
+
+TEST_CASE("a second view with the same levels uploads nothing") {
+    const Assets assets;
+    Stage one(1, kRoomy, kRoomy), two(2, kRoomy, kRoomy);
+    for (Stage* stage : {&one, &two}) {
+        const uint32_t kind = stage->add(assets.large.view, 0, 0);
+        for (int i = 0; i < 5; ++i)
+            stage->place(kind, makePlacement(glm::translate(glm::mat4(1), glm::vec3(4.0f * float(i)))));
+        SelectionDesc desc;
+        desc.view = makeView({1, 2, 9}, 1, 1080);
+        for (Selection& selection : stage->selections) selection.update(stage->scene, desc);
+        stage->frame();
+        for (DrawList& list : stage->lists) checkDraws(*stage, list);
+    }
+    CHECK(one.cache.stats().uploadBytes > 0);
+    CHECK(one.cache.stats().uploadBytes == two.cache.stats().uploadBytes);
+    CHECK(one.lists[0].draws().size() == two.lists[1].draws().size());
 }
 
 TEST_CASE("a frame in which nothing changes copies nothing and keeps its draws") {
     const Assets assets;
-    REQUIRE(assets.small.failure == "");
-    const xgc::AssetView& asset = assets.small.view;
-    xgc::DrawList list;
-    REQUIRE(list.create({}).ok());
-    uint32_t id = 0;
-    REQUIRE(list.addInstance({&asset, 9, 0}, id).ok());
-    std::vector<uint32_t> staging(3 * faces(asset));
-    const std::vector<uint8_t> levels(asset.patchCount(), 1);
-    list.beginFrame(staging);
-    REQUIRE(list.setLevels(id, levels).ok());
-    list.endFrame();
-    const uint32_t triangles = list.stats().triangles;
-    for (int i = 0; i < 3; ++i) {
-        list.beginFrame({});
-        if (i) CHECK(list.setLevels(id, levels).ok());
-        list.endFrame();
-        CHECK(list.copies().empty());
-        CHECK(list.draws().size() == asset.patchCount());
-        CHECK(list.stats().triangles == triangles);
-        CHECK(list.stats().patchesRebuilt == 0);
-        CHECK(list.stats().uploadBytes == 0);
-    }
+    Stage stage(1, kRoomy, kRoomy);
+    const uint32_t kind = stage.add(assets.large.view, 0, 0);
+    stage.place(kind, {});
+    SelectionDesc desc;
+    desc.view = makeView({0, 0, 6}, 1, 1080);
+    stage.selections[0].update(stage.scene, desc);
+    stage.frame();
+    const std::vector<DrawSource> before(stage.lists[0].sources().begin(), stage.lists[0].sources().end());
+    CHECK(stage.lists[0].stats().reboundPatches == assets.large.view.patchCount());
+    stage.selections[0].update(stage.scene, desc);
+    stage.frame();
+    CHECK(stage.cache.copies().empty());
+    CHECK(stage.lists[0].stats().reboundPatches == 0);
+    CHECK(stage.lists[0].draws().size() == before.size());
+    CHECK(stage.lists[0].stats().triangles > 0);
 }
 
-TEST_CASE("what does not fit the configuration is refused with the setting's name") {
+TEST_CASE("what is drawn keeps a budget while uploads lag behind") {
     const Assets assets;
-    REQUIRE(assets.large.failure == "");
-    const xgc::InstanceDesc desc{&assets.large.view, 0, 1};
-    const auto refusal = [&](xgc::DrawListConfig config) {
-        xgc::DrawList list;
-        REQUIRE(list.create(config).ok());
-        uint32_t id = 1234;
-        const xgc::Status status = list.addInstance(desc, id);
-        CHECK((status.ok() || id == 1234));
-        return std::pair(std::string(status.message), status.element);
-    };
-    const auto says = [&](const xgc::DrawListConfig& config, const char* setting, uint64_t needed) {
-        const std::pair<std::string, uint64_t> said = refusal(config);
-        CHECK_MESSAGE(said.first.find(setting) != std::string::npos, said.first);
-        CHECK(said.second == needed);
-    };
-    const xgc::AssetView& asset = assets.large.view;
-    CHECK(refusal({}).first == "ok");
-    says({.patchCapacity = 15}, "patchCapacity", 16);
-    says({.materialCapacity = 3}, "materialCapacity", 4);
-    says({.slotCapacity = 80}, "slotCapacity", 81);
-    says({.domainCapacity = 3}, "domainCapacity", asset.domains.size());
-
-    xgc::DrawList list;
-    REQUIRE(list.create({.instanceCapacity = 1}).ok());
-    uint32_t id = 0;
-    CHECK(list.addInstance(desc, id).ok());
-    const xgc::Status full = list.addInstance(desc, id);
-    CHECK(std::string(full.message).find("instanceCapacity") != std::string::npos);
-    CHECK(full.element == 2);
-    list.removeInstance(id);
-    CHECK(list.addInstance(desc, id).ok()); // the id at once
-
-    CHECK(list.create({.framesInFlight = 0}).code == xgc::StatusCode::badArgument);
-    CHECK(list.levels(id).empty()); // a refused create replaces nothing
+    Stage stage(1, kRoomy, 12 * 500);
+    const uint32_t kind = stage.add(assets.large.view, 0, 0);
+    Random random(6);
+    for (int i = 0; i < 10; ++i) stage.place(kind, random.placement(8));
+    uint32_t late = 0;
+    for (int i = 0; i < 200; ++i) {
+        SelectionDesc desc = wandering(random);
+        desc.pixels = 0.1f;
+        desc.triangleBudget = 1500 + random.below(4000);
+        stage.selections[0].update(stage.scene, desc);
+        REQUIRE_FALSE(stage.selections[0].stats().overBudget);
+        stage.frame();
+        checkDraws(stage, stage.lists[0]);
+        CHECK(stage.lists[0].stats().triangles <= desc.triangleBudget);
+        late += stage.lists[0].stats().deferredInstances;
+    }
+    CHECK(late > 50);
 }
 
-TEST_CASE("range allocator: ranges never overlap, and all of it is one range when all are free") {
-    Random random(3);
-    constexpr uint32_t kSize = 5000;
-    xgc::RangeAllocator allocator;
-    REQUIRE(allocator.create(kSize, 64));
-    std::vector<uint32_t> owner(kSize, 0), live;
-    for (uint32_t step = 1; step < 20000; ++step) {
-        if (random.below(100) < 52) {
-            const uint32_t count = 1 + random.below(random.below(2) ? 300 : 9);
-            const uint32_t r = allocator.allocate(count);
-            if (r == xgc::RangeAllocator::kNoRange) continue;
-            uint32_t taken = 0;
-            for (uint32_t i = 0; i < count; ++i) {
-                taken += owner[allocator.offset(r) + i] != 0;
-                owner[allocator.offset(r) + i] = step;
-            }
-            CHECK(taken == 0);
-            CHECK(allocator.count(r) == count);
-            live.push_back(r);
-        } else if (!live.empty()) {
-            const uint32_t k = random.below(uint32_t(live.size()));
-            for (uint32_t i = 0; i < allocator.count(live[k]); ++i) owner[allocator.offset(live[k]) + i] = 0;
-            allocator.free(live[k]);
-            live[k] = live.back();
-            live.pop_back();
-        }
-        CHECK(allocator.freeTotal() == uint32_t(std::count(owner.begin(), owner.end(), 0u)));
-        CHECK(allocator.rangeCount() == live.size());
+TEST_CASE("an asset can leave while frames that draw it are in flight") {
+    const Assets assets;
+    Stage stage(1, kRoomy, kRoomy);
+    Random random(7);
+    for (int i = 0; i < 30; ++i) {
+        const uint32_t kind = stage.add(i % 2 ? assets.large.view : assets.small.view, 0, 0);
+        const uint32_t id = stage.place(kind, random.placement(9));
+        stage.selections[0].update(stage.scene, wandering(random));
+        stage.frame();
+        checkDraws(stage, stage.lists[0]);
+        stage.scene.removeInstance(id);
+        stage.lists[0].forgetAsset(kind, stage.cache);
+        stage.cache.removeAsset(kind);
+        stage.scene.removeAsset(kind);
+        CHECK(stage.cache.stats().heldRanges == 0);
     }
-    for (const uint32_t r : live) allocator.free(r);
-    const uint32_t all = allocator.allocate(kSize);
-    CHECK(all != xgc::RangeAllocator::kNoRange);
-    CHECK(allocator.allocate(1) == xgc::RangeAllocator::kNoRange);
 }
 
-TEST_CASE("range allocator: a request is refused only where no free range holds it") {
-    Random random(4);
-    constexpr uint32_t kSize = 2000;
-    xgc::RangeAllocator allocator;
-    REQUIRE(allocator.create(kSize, 1000));
-    std::vector<bool> taken(kSize, false);
-    std::vector<uint32_t> live;
-    int refused = 0;
-    for (int step = 0; step < 5000; ++step) {
-        const uint32_t count = 1 + random.below(90);
-        const uint32_t wasLongest = allocator.longestFree(), r = allocator.allocate(count);
-        uint32_t longest = 0;
-        for (uint32_t i = 0, run = 0; i < kSize; ++i) longest = std::max(longest, run = taken[i] ? 0 : run + 1);
-        CHECK((r != xgc::RangeAllocator::kNoRange) == (longest >= count));
-        CHECK(wasLongest == longest);
-        if (r != xgc::RangeAllocator::kNoRange) {
-            std::fill_n(taken.begin() + allocator.offset(r), count, true);
-            live.push_back(r);
-            continue;
+TEST_CASE("updates allocate nothing") {
+    const Assets assets;
+    Stage stage(2, kRoomy, kRoomy);
+    const uint32_t kind = stage.add(assets.large.view, 0, 0);
+    Random random(8);
+    for (int i = 0; i < 20; ++i) stage.place(kind, random.placement(15));
+    const uint64_t before = test::allocations;
+    uint64_t triangles = 0;
+    for (int i = 0; i < 100; ++i) {
+        stage.cache.beginFrame(stage.staging);
+        for (size_t v = 0; v < 2; ++v) {
+            stage.selections[v].update(stage.scene, wandering(random));
+            stage.lists[v].update(stage.scene, stage.selections[v], stage.cache);
+            triangles += stage.lists[v].stats().triangles;
         }
-        ++refused;
-        const uint32_t k = random.below(uint32_t(live.size()));
-        std::fill_n(taken.begin() + allocator.offset(live[k]), allocator.count(live[k]), false);
-        allocator.free(live[k]);
-        live.erase(live.begin() + k);
+        stage.cache.endFrame();
     }
-    CHECK(refused > 500);
+    CHECK(test::allocations == before);
+    CHECK(triangles > 0);
 }

@@ -22,6 +22,11 @@
 
 namespace {
 
+/// All patches at one level.
+std::vector<uint8_t> uniform(const xgc::AssetView& asset, uint32_t level) {
+    return std::vector<uint8_t>(asset.patchCount(), uint8_t(level));
+}
+
 using xgc::AssetView;
 using xgc::IndexCache;
 using xgc::IndexCacheConfig;
@@ -89,7 +94,7 @@ public:
     }
     void submit(const IndexCache& cache, std::span<const std::byte> staging, std::vector<Draw> draws) {
         uint32_t end = 0;
-        for (const xgc::CopyBytes& c : cache.copies()) {
+        for (const xgc::CopyRange& c : cache.copies()) {
             CHECK(c.bytes > 0);
             CHECK((c.staging | c.arena | c.bytes) % 4 == 0);
             CHECK(c.staging == end); // staging has no gaps
@@ -276,7 +281,7 @@ private:
         const uint32_t material = random_.below(asset.record->materialCount);
         const auto level = uint8_t(random_.below(asset.levelCount()));
         uint32_t range = kNoRange;
-        const Status status = cache_.acquireWhole(instance.asset, material, level, range);
+        const Status status = cache_.acquireWhole(instance.asset, material, level, uniform(asset, level), range);
         take(status, range, instance.whole, {level}, [&] { return wholeTriangles(asset, material, level); });
     }
     template <typename Truth>
@@ -303,7 +308,7 @@ private:
         const xgc::IndexCacheStats stats = cache_.stats();
         CHECK(stats.refusals == refused_);
         for (size_t i = stagingBytes_; i < staging_.size(); ++i) CHECK(staging_[i] == kGuard);
-        for (const xgc::CopyBytes& c : cache_.copies()) tally_.digest = (tally_.digest * 31 + c.arena) * 31 + c.bytes;
+        for (const xgc::CopyRange& c : cache_.copies()) tally_.digest = (tally_.digest * 31 + c.arena) * 31 + c.bytes;
         tally_.refused += refused_;
         tally_.hits += stats.hits;
         tally_.misses += stats.misses;
@@ -448,7 +453,7 @@ TEST_CASE("full pools refuse, and nothing leaks: the whole arena can be had as o
         std::vector<std::byte> staging(1u << 20);
         cache.beginFrame(staging);
         uint32_t range = kNoRange;
-        REQUIRE(cache.acquireWhole(4, 0, 0, range).ok());
+        REQUIRE(cache.acquireWhole(4, 0, 0, uniform(asset, 0), range).ok());
         cache.endFrame();
         if (scarce == 0) {
             CHECK(cache.at(range).firstIndex == 0);
@@ -723,7 +728,7 @@ TEST_CASE("an asset that needs 32-bit indices has 16-bit ranges too, and wide sl
         }
         for (const uint32_t level : {2u, 6u, 8u}) {
             uint32_t range = kNoRange;
-            REQUIRE(one.cache.acquireWhole(0, 1, level, range).ok());
+            REQUIRE(one.cache.acquireWhole(0, 1, level, uniform(asset, level), range).ok());
             draw(range, wholeTriangles(asset, 1, level));
         }
         one.cache.endFrame();
@@ -879,8 +884,8 @@ TEST_CASE("an arena of twice the bytes that are held refuses nothing") {
             one.emptyFrames(one.cache.stats().heldRanges == held.size() ? 3 : 0);
             one.begin();
             uint32_t range = kNoRange;
-            const Status status =
-                whole ? one.cache.acquireWhole(0, 0, level, range) : one.acquire(patch, levels, range);
+            const Status status = whole ? one.cache.acquireWhole(0, 0, level, uniform(asset, level), range)
+                                        : one.acquire(patch, levels, range);
             REQUIRE_MESSAGE(status.ok(), status.message << " step " << step);
             if (held.emplace(range, bytes).second)
                 heldBytes += bytes;

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace {
@@ -10,6 +11,7 @@ namespace {
 /// Counts what the library holds, and refuses past a limit.
 struct Heap {
     size_t held = 0;
+    size_t most = 0; ///< that it held at once
     size_t calls = 0;
     size_t limit = SIZE_MAX;
 
@@ -19,6 +21,7 @@ struct Heap {
                     ++heap.calls;
                     if (bytes > heap.limit - heap.held) return nullptr;
                     heap.held += bytes;
+                    heap.most = std::max(heap.most, heap.held);
                     return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
                 },
                 [](void* user, void* memory, size_t bytes, size_t) {
@@ -37,35 +40,43 @@ struct Installed {
 
 } // namespace
 
+/// Everything that owns memory; false where a heap runs dry.
+bool createAll() {
+    xgc::Scene scene;
+    xgc::Selection selection;
+    xgc::IndexCache cache;
+    xgc::DrawList list;
+    for (const xgc::Status& status : {scene.create({}), selection.create({}), cache.create({}), list.create({})}) {
+        if (!status.ok()) {
+            CHECK(status.code == xgc::StatusCode::outOfCapacity);
+            return false;
+        }
+    }
+    return true;
+}
+
 TEST_CASE("all memory comes from the host's allocator and goes back to it") {
     Heap heap;
     const Installed installed(heap);
-    {
-        xgc::DrawList list;
-        REQUIRE(list.create({}).ok());
-        CHECK(heap.calls > 0);
-        CHECK(heap.held > sizeof(uint32_t) * xgc::DrawListConfig{}.patchCapacity);
-    }
+    CHECK(createAll());
+    CHECK(heap.calls > 10);
+    CHECK(heap.most > sizeof(uint32_t) * xgc::SceneConfig{}.patchCapacity);
     CHECK(heap.held == 0);
 }
 
 TEST_CASE("a heap that runs dry is a status, and nothing stays behind") {
-    Heap full;
+    size_t enough = 0;
     {
-        const Installed installed(full);
-        xgc::DrawList list;
-        REQUIRE(list.create({}).ok());
-        full.limit = full.held;
+        Heap heap;
+        const Installed installed(heap);
+        REQUIRE(createAll());
+        enough = heap.most;
     }
-    for (size_t limit = 0; limit < full.limit; limit += full.limit / 13 + 1) {
+    for (size_t limit = 0; limit < enough; limit += enough / 40 + 1) {
         Heap heap;
         heap.limit = limit;
         const Installed installed(heap);
-        {
-            xgc::DrawList list;
-            const xgc::Status status = list.create({});
-            CHECK(status.code == xgc::StatusCode::outOfCapacity);
-        }
+        CHECK_FALSE(createAll());
         CHECK(heap.held == 0);
     }
 }

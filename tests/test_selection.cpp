@@ -71,8 +71,11 @@ struct Stage {
 std::vector<uint8_t> levelsOf(const Stage& stage, const Selection& selection, uint32_t id) {
     const size_t count = stage.scene.asset(stage.scene.assetOf(id)).asset->patchCount();
     if (selection.kind(id) == InstanceKind::culled) return {};
-    if (selection.kind(id) == InstanceKind::whole)
-        return std::vector<uint8_t>(count, uint8_t(selection.wholeLevel(id)));
+    if (selection.kind(id) == InstanceKind::whole) {
+        std::vector<uint8_t> levels(count);
+        stage.scene.wholeLevels(stage.scene.assetOf(id), selection.wholeState(id), levels);
+        return levels;
+    }
     return {selection.levels(id).begin(), selection.levels(id).end()};
 }
 
@@ -191,7 +194,7 @@ TEST_CASE("with error-pixels P no patch projects to more than P, near or far, wh
     CHECK(mixed > 100);
 }
 
-TEST_CASE("a far instance is decided as a whole, at the finest level that any of its patches needs") {
+TEST_CASE("a far instance is decided as a whole, in the coarsest state that fits") {
     Stage stage;
     const AssetView& asset = torus().view;
     const uint32_t id = stage.place(stage.add(asset), {});
@@ -205,13 +208,14 @@ TEST_CASE("a far instance is decided as a whole, at the finest level that any of
         CHECK(stage.selection.stats().wholeInstances == (far ? 1 : 0));
         CHECK(stage.selection.stats().consideredPatches == (far ? 0 : asset.patchCount()));
         if (!far) continue;
-        // One level coarser would break the bound at the near side of the asset.
-        const uint32_t level = stage.selection.wholeLevel(id);
-        const double away = double(radii * radius - radius);
-        if (level + 1 < asset.levelCount()) {
-            double next = 0;
-            for (uint32_t p = 0; p < asset.patchCount(); ++p) next = std::max(next, double(asset.error(p, level + 1)));
-            CHECK(next * double(desc.view.pixelsPerUnit) / away > double(desc.pixels) * 0.999);
+        // The next state would break the bound at the near side of the asset.
+        const uint32_t state = stage.selection.wholeState(id), kind = stage.scene.assetOf(id);
+        const auto covers = [&](float error) {
+            return double(error) * double(desc.view.pixelsPerUnit) / double(radii * radius - radius);
+        };
+        CHECK(covers(stage.scene.wholeError(kind, state)) <= 1.001 * double(desc.pixels));
+        if (state + 1 < stage.scene.wholeStateCount(kind)) {
+            CHECK(covers(stage.scene.wholeError(kind, state + 1)) > 0.999 * double(desc.pixels));
         }
     }
     // Steered parts are chosen one by one.
@@ -704,6 +708,22 @@ TEST_CASE("a host's own levels are taken as they are") {
     for (uint32_t p = 0; p < own.size(); ++p) own[p] = uint8_t(p % asset.levelCount());
     stage.selection.set(stage.scene, id, own);
     CHECK(levelsOf(stage, stage.selection, id) == own);
+}
+
+TEST_CASE("an instance that is made invisible is culled, and comes back as it was") {
+    Stage stage;
+    const uint32_t id = stage.place(stage.add(torus().view), {});
+    SelectionDesc desc;
+    desc.view = viewFrom({0, 0, 9});
+    stage.selection.update(stage.scene, desc);
+    const std::vector<uint8_t> before = levelsOf(stage, stage.selection, id);
+    stage.scene.setVisible(id, false);
+    stage.selection.update(stage.scene, desc);
+    CHECK(stage.selection.kind(id) == InstanceKind::culled);
+    CHECK(stage.selection.stats().visibleInstances == 0);
+    stage.scene.setVisible(id, true);
+    stage.selection.update(stage.scene, desc);
+    CHECK(levelsOf(stage, stage.selection, id) == before);
 }
 
 TEST_CASE("what does not fit a scene is refused with the setting's name") {

@@ -27,8 +27,8 @@ uint64_t Selection::Impl::countInstance(uint32_t id, const LevelPolicy& at, Coun
     const Subject s = subject(id);
     if (s.own.kind == InstanceKind::culled) return 0;
     if (s.own.kind == InstanceKind::whole) {
-        const uint32_t hint = s.own.wholeLevel == kNoLevel ? 0 : s.own.wholeLevel;
-        return s.asset.levels[s.wholeTest(at, *scene).coarsest(at.loose, hint)].faceCount;
+        const uint32_t hint = s.own.wholeState == kNoLevel ? 0 : s.own.wholeState;
+        return scene->trianglesOf(s.instance.asset, s.wholeTest(at, *scene).coarsest(at.loose, hint));
     }
     const MeshEye eye = desc.cullBackfaces ? meshEye(desc.view, s.instance.placement.toWorld) : MeshEye{};
     uint64_t least = 0;
@@ -61,7 +61,7 @@ uint64_t Selection::Impl::countChosen() {
     for (uint32_t id = 0; id < scene->instanceEnd; ++id) {
         if (scene->instances[id].generation % 2 == 0) continue;
         const Subject s = subject(id);
-        if (s.own.kind == InstanceKind::whole) triangles += s.asset.levels[s.own.wholeLevel].faceCount;
+        if (s.own.kind == InstanceKind::whole) triangles += scene->trianglesOf(s.instance.asset, s.own.wholeState);
         if (s.own.kind == InstanceKind::mixed) triangles += boundOf(s);
     }
     return triangles;

@@ -1,51 +1,51 @@
 #include <xgc/draw_list.h>
 
-#include "range_allocator.h"
+#include "scene.h"
 
 #include <algorithm>
 #include <cassert>
-#include <new>
+#include <utility>
 
-// Each patch of each instance has a slot: its level and its range in the index arena. `setLevels` lists the patches
-// whose indices differ between the two states, builds them into staging, allocates their new ranges, and only when
-// all of that succeeded swaps the ranges in. Old ranges wait in a queue until no frame in flight reads them:
+// What a view draws, instance by instance, and the ranges that it holds for that in the index cache:
 //
-//   arena   [ A.0 | A.1 | old A.2 |  free  | A.2 | B.0 | ... ]
-//                            |__ reused framesInFlight frames later
+//   whole   one range a material of (asset, state), held once for all instances in that state
+//   mixed   one range a patch that is shown; whole ones too where their asset is too large to be built at once
 //
-// All arrays have their full size from `create` on.
+// A change of a mixed instance is a plan: levels to go to, and the patches whose ranges differ there. A plan whose
+// ranges fit what is left of the frame's staging is bound as a whole; else one of the most urgent changes alone, found
+// by halving. Where not even the patches that must be shown fit at the levels that they have, the instance stays whole,
+// in its last state or in the asset's coarsest, and what fits of the plan is built ahead: the cache keeps it.
 
 namespace xgc {
 namespace {
 
-constexpr uint32_t kNoRange = RangeAllocator::kNoRange;
+constexpr uint32_t kNoRange = IndexCache::kNoRange;
 
-struct Instance {
-    const AssetView* asset = nullptr; ///< null: the id is free
-    int32_t vertexOffset = 0;
-    uint32_t slotRange = kNoRange;
+/// A state of a whole asset, as long as instances are drawn in it.
+struct WholeState {
+    uint32_t holders = 0;            ///< instances, and one for the coarsest state of an asset in sight
+    uint32_t handle = format::kNone; ///< of its entries in wholeRanges
+    uint32_t firstRange = 0;
+    uint32_t finestLevel = format::kNever;
+    // While draws are listed.
+    uint32_t count = 0;
+    uint32_t firstInstance = 0;
+};
+
+struct DrawnInstance {
+    uint32_t generation = 0;
+    InstanceKind kind = InstanceKind::culled; ///< culled: holds nothing
+    bool late = false;                        ///< is not drawn as was selected
+    uint8_t wholeState = 0;
+    uint32_t asset = 0;
     uint32_t firstSlot = 0;
-    bool drawn = false;         ///< has levels
-    uint64_t deferredFrame = 0; ///< last frame that refused it
-    uint32_t nextFree = format::kNone;
+    uint32_t patchCount = 0;
 };
 
-/// A patch of an instance.
-struct Slot {
-    uint32_t range = kNoRange; ///< kNoRange: nothing to draw
-    uint32_t material = 0;
-};
-
-/// A patch on its way to a new range.
-struct Rebuild {
+/// A patch that gets another range.
+struct Rebind {
     uint32_t patch;
     uint32_t range;
-    uint32_t staging;
-};
-
-struct FreedRange {
-    uint32_t range;
-    uint64_t frame;
 };
 
 Status outOfCapacity(const char* message, uint64_t element) {
@@ -57,381 +57,522 @@ Status outOfCapacity(const char* message, uint64_t element) {
 struct DrawList::Impl : Allocated<DrawList::Impl> {
     DrawListConfig config;
 
-    FixedArray<Instance> instances;
-    uint32_t instanceEnd = 0; ///< ids from here on were never used
-    uint32_t freeInstance = format::kNone;
-
-    RangeAllocator slotRanges;
-    FixedArray<Slot> slots;
+    FixedArray<DrawnInstance> instances;
+    FixedArray<uint32_t> slotRanges; ///< kNoRange: not shown
     FixedArray<uint8_t> slotLevels;
 
-    RangeAllocator arena;
-    FixedArray<FreedRange> freed; ///< a ring, oldest first
-    size_t freedFirst = 0, freedCount = 0;
+    FixedArray<WholeState> wholeStates; ///< asset * kMaxWholeStates + state
+    FixedArray<uint8_t> assetsInSight;  ///< hold their coarsest state
+    RangeAllocator wholeHandles;
+    FixedArray<uint32_t> wholeRanges;
 
-    // Scratch of setLevels.
-    FixedArray<uint32_t> representatives;
-    FixedArray<Rebuild> rebuilds;
-    uint32_t rebuildCount = 0;
-    FixedArray<uint64_t> patchMarks, domainMarks; ///< equal `call` where seen in it
-    uint64_t call = 0;
+    // Scratch of a plan.
+    FixedArray<uint8_t> planLevels;
+    FixedArray<uint8_t> wholeLevels; ///< of a whole instance that is drawn by patches
+    FixedArray<uint8_t> heldLevels;  ///< of a state that is being held
+    FixedArray<uint8_t> allShown;    ///< ones
+    FixedArray<uint32_t> changes;    ///< patches whose level is to change, the most urgent first
+    uint32_t changeCount = 0;
+    FixedArray<Rebind> rebinds;
+    uint32_t rebindCount = 0;
+    FixedArray<uint64_t> patchMarks, domainMarks; ///< equal `plan` where seen in it
+    uint64_t plan = 0;
 
-    // The frame.
-    uint64_t frame = 0;
-    bool inFrame = false;
-    bool drawsStale = false;
-    std::span<uint32_t> staging;
-    uint32_t stagingUsed = 0;
-    FixedArray<CopyRange> copies;
-    uint32_t copyCount = 0;
+    // The draws.
+    bool stale = true;
     FixedArray<DrawCommand> draws;
-    FixedArray<DrawPatch> drawPatches;
+    FixedArray<DrawSource> sources;
     uint32_t drawCount = 0;
     FixedArray<DrawBatch> batches;
     uint32_t batchCount = 0;
-    FixedArray<uint32_t> materialNext; ///< next draw of each material while sorting
-    FrameStats stats;
+    FixedArray<uint32_t> batchNext; ///< 2 * material + (four bytes): draws, then the next one's place
+    FixedArray<uint32_t> drawInstances;
+    uint32_t drawInstanceCount = 0;
+    FixedArray<uint32_t> activeStates;
+    uint32_t activeStateCount = 0;
+    DrawStats stats;
+    Status refusal;
+
+    // Of the update under way.
+    const Scene::Impl* scene = nullptr;
+    const Selection* selection = nullptr;
+    IndexCache* cache = nullptr;
 
     bool allocate();
-    Instance& at(uint32_t id);
-    void freeLater(uint32_t range);
-    void releaseOld();
-    void mark(uint32_t patch);
-    uint32_t listRebuilds(const Instance& instance, Levels after);
-    Status buildRebuilds(const Instance& instance, Levels after);
-    void commit(Instance& instance, Levels after);
-    void addCopy(const Rebuild& built);
-    void countMaterials();
-    void fillDraws();
-    void addDraw(uint32_t id, uint32_t patch);
+    const AssetView& view(uint32_t asset) const { return *scene->assets[asset].desc.asset; }
+    WholeState& heldState(uint32_t asset, uint32_t state) {
+        return wholeStates[size_t(asset) * kMaxWholeStates + state];
+    }
+
+    uint32_t coarsestState(uint32_t asset) const { return scene->assets[asset].wholeStateCount - 1; }
+    bool holdWhole(uint32_t asset, uint32_t state);
+    void releaseWhole(uint32_t asset, uint32_t state, IndexCache& from);
+    void release(DrawnInstance& own, IndexCache& from);
+    void dropGone();
+
+    void follow(uint32_t id);
+    bool becomeWhole(DrawnInstance& own, uint32_t state);
+    void becomeCoarsest(DrawnInstance& own);
+    bool followWhole(DrawnInstance& own, uint32_t state);
+    bool followMixed(DrawnInstance& own, Levels target, std::span<const uint8_t> shown);
+    bool stands(const DrawnInstance& own, Levels target, std::span<const uint8_t> shown) const;
+    void listChanges(const DrawnInstance& own, Levels target);
+    bool goTo(DrawnInstance& own, Levels target, std::span<const uint8_t> shown, uint32_t count);
+    void mark(uint32_t patch, std::span<const uint8_t> shown);
+    void listRebinds(const DrawnInstance& own, Levels after, std::span<const uint8_t> shown);
+    bool bind(DrawnInstance& own, Levels after, std::span<const uint8_t> shown);
+    void buildAhead(const DrawnInstance& own, Levels after, std::span<const uint8_t> shown);
+    void keepBudget();
+
+    void listStates();
+    void listDraws();
+    template <typename Add>
+    void forDraws(Add add);
 };
 
 // Set-up ------------------------------------------------------------------------------------------------------------
-
-bool DrawList::Impl::allocate() {
-    // Ranges live: drawn, new before the swap, and freed in each frame that may still be in flight. No range is
-    // shorter than a triangle.
-    const uint64_t patches = config.patchCapacity;
-    const auto ranges =
-        uint32_t(std::min<uint64_t>(patches * (uint64_t(config.framesInFlight) + 2), config.indexCapacity / 3 + 1));
-    return instances.allocate(config.instanceCapacity) &&
-           slotRanges.create(config.patchCapacity, config.instanceCapacity) && slots.allocate(patches) &&
-           slotLevels.allocate(patches) && arena.create(config.indexCapacity, ranges) && freed.allocate(ranges) &&
-           representatives.allocate(config.slotCapacity) && rebuilds.allocate(patches) &&
-           patchMarks.allocate(patches) && domainMarks.allocate(config.domainCapacity) && copies.allocate(patches) &&
-           draws.allocate(patches) && drawPatches.allocate(patches) && batches.allocate(config.materialCapacity) &&
-           materialNext.allocate(config.materialCapacity);
-}
 
 DrawList::DrawList() = default;
 DrawList::~DrawList() = default;
 DrawList::DrawList(DrawList&&) noexcept = default;
 DrawList& DrawList::operator=(DrawList&&) noexcept = default;
 
+bool DrawList::Impl::allocate() {
+    const size_t slots = config.scene.patchCapacity, patches = config.scene.assetPatchCapacity;
+    const size_t states = size_t(config.scene.assetCapacity) * kMaxWholeStates;
+    const size_t drawCapacity = slots + config.wholeRangeCapacity;
+    return instances.allocate(config.scene.instanceCapacity) && slotRanges.allocate(slots) &&
+           slotLevels.allocate(slots) && wholeStates.allocate(states) &&
+           assetsInSight.allocate(config.scene.assetCapacity) &&
+           wholeHandles.create(config.wholeRangeCapacity, config.wholeRangeCapacity) &&
+           wholeRanges.allocate(config.wholeRangeCapacity) && planLevels.allocate(patches) &&
+           wholeLevels.allocate(patches) && heldLevels.allocate(patches) && allShown.allocate(patches) &&
+           changes.allocate(patches) && rebinds.allocate(patches) && patchMarks.allocate(patches) &&
+           domainMarks.allocate(config.domainCapacity) && draws.allocate(drawCapacity) &&
+           sources.allocate(drawCapacity) && batches.allocate(2 * size_t(config.materialCapacity)) &&
+           batchNext.allocate(2 * size_t(config.materialCapacity)) &&
+           drawInstances.allocate(config.scene.instanceCapacity) && activeStates.allocate(config.wholeRangeCapacity);
+}
+
 Status DrawList::create(const DrawListConfig& config) {
-    if (config.instanceCapacity == 0 || config.patchCapacity == 0 || config.materialCapacity == 0 ||
-        config.slotCapacity == 0 || config.indexCapacity == 0 || config.framesInFlight == 0) {
-        return {StatusCode::badArgument, "DrawListConfig: every capacity and framesInFlight must be at least 1"};
+    if (config.materialCapacity == 0 || config.wholeRangeCapacity == 0 || config.domainCapacity == 0 ||
+        config.scene.instanceCapacity == 0) {
+        return {StatusCode::badArgument, "DrawListConfig: every capacity must be at least 1", 0};
     }
     std::unique_ptr<Impl> impl(new (std::nothrow) Impl);
     if (impl) impl->config = config;
     if (!impl || !impl->allocate()) {
         return outOfCapacity("DrawListConfig: not enough memory for these capacities; lower them", 0);
     }
+    std::fill_n(impl->slotRanges.data(), impl->slotRanges.size(), kNoRange);
+    std::fill_n(impl->allShown.data(), impl->allShown.size(), uint8_t(1));
     impl_ = std::move(impl);
     return {};
 }
 
+// Whole assets ------------------------------------------------------------------------------------------------------
+
+/// One more holder of a state of an asset. False, and nothing is held, where the cache refuses.
+bool DrawList::Impl::holdWhole(uint32_t asset, uint32_t state) {
+    WholeState& held = heldState(asset, state);
+    if (held.holders > 0) {
+        ++held.holders;
+        return true;
+    }
+    const auto materials = uint32_t(view(asset).materials.size());
+    const uint32_t handle = wholeHandles.allocate(materials);
+    if (handle == RangeAllocator::kNoRange) {
+        refusal = outOfCapacity("too many states of whole assets: raise DrawListConfig::wholeRangeCapacity", materials);
+        return false;
+    }
+    uint32_t* ranges = wholeRanges.data() + wholeHandles.offset(handle);
+    const std::span<uint8_t> levels(heldLevels.data(), view(asset).patchCount());
+    scene->wholeLevels(asset, state, levels);
+    for (uint32_t m = 0; m < materials; ++m) {
+        const Status status = cache->acquireWhole(asset, m, state, levels, ranges[m]);
+        if (status.ok()) continue;
+        while (m-- > 0) cache->release(ranges[m]);
+        wholeHandles.free(handle);
+        refusal = status;
+        return false;
+    }
+    held = {.holders = 1, .handle = handle, .firstRange = wholeHandles.offset(handle)};
+    for (const uint8_t level : levels) held.finestLevel = std::min<uint32_t>(held.finestLevel, level);
+    return true;
+}
+
+void DrawList::Impl::releaseWhole(uint32_t asset, uint32_t state, IndexCache& from) {
+    WholeState& held = heldState(asset, state);
+    assert(held.holders > 0);
+    if (--held.holders > 0) return;
+    for (uint32_t i = 0; i < wholeHandles.count(held.handle); ++i) from.release(wholeRanges[held.firstRange + i]);
+    wholeHandles.free(held.handle);
+    held = {};
+}
+
 // Instances ---------------------------------------------------------------------------------------------------------
 
-Instance& DrawList::Impl::at(uint32_t id) {
-    assert(id < instanceEnd && instances[id].asset && "no such instance");
-    return instances[id];
+/// Lets go of all that an instance holds: it is drawn no more.
+void DrawList::Impl::release(DrawnInstance& own, IndexCache& from) {
+    if (own.kind == InstanceKind::whole) releaseWhole(own.asset, own.wholeState, from);
+    if (own.kind == InstanceKind::mixed) {
+        for (uint32_t slot = own.firstSlot; slot < own.firstSlot + own.patchCount; ++slot) {
+            if (slotRanges[slot] != kNoRange) from.release(slotRanges[slot]);
+            slotRanges[slot] = kNoRange;
+        }
+    }
+    stale |= own.kind != InstanceKind::culled;
+    own.kind = InstanceKind::culled;
 }
 
-Status DrawList::addInstance(const InstanceDesc& desc, uint32_t& id) {
-    assert(impl_ && desc.asset && desc.asset->record);
-    Impl& d = *impl_;
-    const AssetView& asset = *desc.asset;
-    const format::AssetRecord& record = *asset.record;
-    if (d.freeInstance == format::kNone && d.instanceEnd == d.config.instanceCapacity) {
-        return outOfCapacity("too many instances: raise DrawListConfig::instanceCapacity", d.instanceEnd + 1ull);
-    }
-    if (scratchCapacity(asset) > d.config.slotCapacity) {
-        return outOfCapacity("a patch has too many slots: raise DrawListConfig::slotCapacity", scratchCapacity(asset));
-    }
-    if (record.domainCount > d.config.domainCapacity) {
-        return outOfCapacity("the asset has too many domains: raise DrawListConfig::domainCapacity",
-                             record.domainCount);
-    }
-    const uint64_t materialEnd = uint64_t(desc.firstMaterial) + record.materialCount;
-    if (materialEnd > d.config.materialCapacity) {
-        return outOfCapacity("too many materials: raise DrawListConfig::materialCapacity", materialEnd);
-    }
-    const uint32_t slotRange = record.patchCount ? d.slotRanges.allocate(record.patchCount) : kNoRange;
-    if (record.patchCount && slotRange == kNoRange) {
-        return outOfCapacity("too many patches: raise DrawListConfig::patchCapacity", record.patchCount);
-    }
-
-    id = d.freeInstance != format::kNone ? d.freeInstance : d.instanceEnd++;
-    d.freeInstance = d.instances[id].nextFree;
-    Instance& instance = d.instances[id] = Instance{};
-    instance.asset = desc.asset;
-    instance.vertexOffset = desc.vertexOffset;
-    instance.slotRange = slotRange;
-    instance.firstSlot = slotRange == kNoRange ? 0 : d.slotRanges.offset(slotRange);
-    for (uint32_t p = 0; p < record.patchCount; ++p) {
-        d.slots[instance.firstSlot + p] = {kNoRange, desc.firstMaterial + asset.patches[p].material};
-    }
-    return {};
-}
-
-void DrawList::removeInstance(uint32_t id) {
-    assert(impl_);
-    Impl& d = *impl_;
-    Instance& instance = d.at(id);
-    for (uint32_t p = 0; p < instance.asset->patchCount(); ++p) {
-        const uint32_t range = d.slots[instance.firstSlot + p].range;
-        if (range != kNoRange) d.freeLater(range);
-    }
-    if (instance.slotRange != kNoRange) d.slotRanges.free(instance.slotRange);
-    d.drawsStale |= instance.drawn;
-    instance = Instance{};
-    instance.nextFree = d.freeInstance;
-    d.freeInstance = id;
-}
-
-Levels DrawList::levels(uint32_t id) const {
-    assert(impl_);
-    const Instance& instance = impl_->at(id);
-    if (!instance.drawn) return {};
-    return {impl_->slotLevels.data() + instance.firstSlot, instance.asset->patchCount()};
-}
-
-// Old ranges --------------------------------------------------------------------------------------------------------
-
-void DrawList::Impl::freeLater(uint32_t range) {
-    assert(freedCount < freed.size());
-    freed[(freedFirst + freedCount++) % freed.size()] = {range, frame};
-}
-
-void DrawList::Impl::releaseOld() {
-    for (; freedCount > 0 && frame - freed[freedFirst].frame >= config.framesInFlight; --freedCount) {
-        arena.free(freed[freedFirst].range);
-        freedFirst = (freedFirst + 1) % freed.size();
+/// Lets go of what instances held that left the scene, before others take their slots.
+void DrawList::Impl::dropGone() {
+    for (uint32_t id = 0; id < scene->instanceEnd; ++id) {
+        DrawnInstance& own = instances[id];
+        const uint32_t generation = scene->instances[id].generation;
+        if (own.generation == generation) continue;
+        release(own, *cache);
+        own = {.generation = generation};
+        if (generation % 2 == 0) continue;
+        const SceneInstance& instance = scene->instances[id];
+        own.asset = instance.asset;
+        own.firstSlot = instance.firstSlot;
+        own.patchCount = view(instance.asset).patchCount();
     }
 }
 
-// A change of levels ------------------------------------------------------------------------------------------------
-
-void DrawList::Impl::mark(uint32_t patch) {
-    if (patchMarks[patch] == call) return;
-    patchMarks[patch] = call;
-    rebuilds[rebuildCount++] = {patch, kNoRange, 0};
+void DrawList::Impl::follow(uint32_t id) {
+    DrawnInstance& own = instances[id];
+    const InstanceKind kind = selection->kind(id);
+    own.late = false;
+    if (kind == InstanceKind::culled) return release(own, *cache);
+    if (!assetsInSight[own.asset]) assetsInSight[own.asset] = holdWhole(own.asset, coarsestState(own.asset));
+    own.late = kind == InstanceKind::whole ? !followWhole(own, selection->wholeState(id))
+                                           : !followMixed(own, selection->levels(id), selection->visible(id));
+    stats.instances += own.kind != InstanceKind::culled;
+    stats.deferredInstances += own.late;
 }
 
-/// Lists the patches whose indices differ between the instance's state and `after`: those whose own vertices
-/// changed, and all that share a domain that changed. Only domains of changed patches are looked at, each once.
-/// Returns the number of patches whose level differs.
-uint32_t DrawList::Impl::listRebuilds(const Instance& instance, Levels after) {
-    const AssetView& asset = *instance.asset;
-    ++call;
-    rebuildCount = 0;
-    if (!instance.drawn) {
-        for (uint32_t p = 0; p < asset.patchCount(); ++p) mark(p);
-        return asset.patchCount();
+/// True where the instance stands as selected now.
+bool DrawList::Impl::followWhole(DrawnInstance& own, uint32_t state) {
+    if (scene->trianglesOf(own.asset, state) > config.wholeTriangles && state < coarsestState(own.asset)) {
+        // Too large to be built at once.
+        const std::span<uint8_t> levels(wholeLevels.data(), own.patchCount);
+        scene->wholeLevels(own.asset, state, levels);
+        return followMixed(own, levels, {allShown.data(), own.patchCount});
     }
-    const Levels before{slotLevels.data() + instance.firstSlot, asset.patchCount()};
-    uint32_t changed = 0;
-    for (uint32_t p = 0; p < asset.patchCount(); ++p) {
-        if (before[p] == after[p]) continue;
-        ++changed;
-        if (patchDiffers(asset, p, before[p], after[p])) mark(p);
+    if (becomeWhole(own, state)) return true;
+    if (own.kind != InstanceKind::whole) becomeCoarsest(own);
+    return false;
+}
+
+/// False, and nothing changes, where the cache refuses.
+bool DrawList::Impl::becomeWhole(DrawnInstance& own, uint32_t state) {
+    if (own.kind == InstanceKind::whole && own.wholeState == state) return true;
+    if (!holdWhole(own.asset, state)) return false;
+    release(own, *cache);
+    own.kind = InstanceKind::whole;
+    own.wholeState = uint8_t(state);
+    stale = true;
+    return true;
+}
+
+/// The last resort, whose ranges are held already.
+void DrawList::Impl::becomeCoarsest(DrawnInstance& own) {
+    if (!becomeWhole(own, coarsestState(own.asset))) release(own, *cache);
+}
+
+// A mixed instance --------------------------------------------------------------------------------------------------
+
+bool DrawList::Impl::stands(const DrawnInstance& own, Levels target, std::span<const uint8_t> shown) const {
+    if (own.kind != InstanceKind::mixed) return false;
+    for (uint32_t p = 0; p < own.patchCount; ++p) {
+        const uint32_t slot = own.firstSlot + p;
+        if (slotLevels[slot] != target[p] || (slotRanges[slot] != kNoRange) != bool(shown[p])) return false;
+    }
+    return true;
+}
+
+/// True where the instance stands as selected now.
+bool DrawList::Impl::followMixed(DrawnInstance& own, Levels target, std::span<const uint8_t> shown) {
+    if (stands(own, target, shown)) return true;
+    if (own.kind != InstanceKind::mixed) {
+        // Where it starts from. Until a plan is bound it stays as it is.
+        const uint32_t state = own.kind == InstanceKind::whole ? own.wholeState : coarsestState(own.asset);
+        scene->wholeLevels(own.asset, state, {slotLevels.data() + own.firstSlot, own.patchCount});
+    }
+    listChanges(own, target);
+    uint32_t count = changeCount;
+    bool bound = goTo(own, target, shown, count);
+    while (!bound && count > 0) bound = goTo(own, target, shown, count /= 2);
+    if (!bound || count < std::min(changeCount, 1u)) buildAhead(own, target, shown);
+    // Where not even what must be shown has room.
+    if (!bound && own.kind != InstanceKind::whole) becomeCoarsest(own);
+    return stands(own, target, shown);
+}
+
+/// Patches that are to change their level, those first that are the most levels too coarse.
+void DrawList::Impl::listChanges(const DrawnInstance& own, Levels target) {
+    const uint8_t* now = slotLevels.data() + own.firstSlot;
+    changeCount = 0;
+    for (uint32_t p = 0; p < own.patchCount; ++p) {
+        if (now[p] != target[p]) changes[changeCount++] = p;
+    }
+    const auto urgency = [&](uint32_t p) { return int(now[p]) - int(target[p]); };
+    std::sort(changes.data(), changes.data() + changeCount,
+              [&](uint32_t a, uint32_t b) { return urgency(a) != urgency(b) ? urgency(a) > urgency(b) : a < b; });
+}
+
+/// Makes the first `count` changes, and shows what is to be shown. False, and nothing changes, where that does not fit.
+bool DrawList::Impl::goTo(DrawnInstance& own, Levels target, std::span<const uint8_t> shown, uint32_t count) {
+    std::copy_n(slotLevels.data() + own.firstSlot, own.patchCount, planLevels.data());
+    for (uint32_t i = 0; i < count; ++i) planLevels[changes[i]] = target[changes[i]];
+    const Levels after{planLevels.data(), own.patchCount};
+    listRebinds(own, after, shown);
+    uint64_t bytes = 0;
+    for (uint32_t i = 0; i < rebindCount; ++i) bytes += cache->bytesNeeded(own.asset, rebinds[i].patch, after);
+    if (bytes > cache->freeStagingBytes()) {
+        refusal = outOfCapacity("a change does not fit the frame's staging memory: it comes in pieces, or give "
+                                "IndexCache::beginFrame as many bytes as element says",
+                                bytes);
+        return false;
+    }
+    return bind(own, after, shown);
+}
+
+void DrawList::Impl::mark(uint32_t patch, std::span<const uint8_t> shown) {
+    if (patchMarks[patch] == plan || !shown[patch]) return;
+    patchMarks[patch] = plan;
+    rebinds[rebindCount++] = {patch, kNoRange};
+}
+
+/// Lists the shown patches that have no range, or another one in the plan: those whose own vertices change, and all
+/// that share a domain that does. Only domains of changed patches are looked at, each once.
+void DrawList::Impl::listRebinds(const DrawnInstance& own, Levels after, std::span<const uint8_t> shown) {
+    const AssetView& asset = view(own.asset);
+    const Levels before{slotLevels.data() + own.firstSlot, own.patchCount};
+    ++plan;
+    rebindCount = 0;
+    for (uint32_t p = 0; p < own.patchCount; ++p) {
+        if (own.kind != InstanceKind::mixed || slotRanges[own.firstSlot + p] == kNoRange) mark(p, shown);
+        if (before[p] == after[p] || own.kind != InstanceKind::mixed) continue;
+        if (patchDiffers(asset, p, before[p], after[p])) mark(p, shown);
         for (const uint32_t domain : asset.domainsOf(p)) {
-            if (domainMarks[domain] == call) continue;
-            domainMarks[domain] = call;
+            if (domainMarks[domain] == plan) continue;
+            domainMarks[domain] = plan;
             if (!domainDiffers(asset, domain, before, after)) continue;
-            for (const uint32_t sharer : asset.patchesOf(domain)) mark(sharer);
+            for (const uint32_t sharer : asset.patchesOf(domain)) mark(sharer, shown);
         }
     }
-    return changed;
 }
 
-/// Builds the listed patches into staging and gives them ranges. Where something is full, nothing has changed.
-Status DrawList::Impl::buildRebuilds(const Instance& instance, Levels after) {
-    const AssetView& asset = *instance.asset;
-    uint64_t needed = 0;
-    for (uint32_t i = 0; i < rebuildCount; ++i) {
-        needed += indexCapacity(asset, rebuilds[i].patch, after);
+/// Goes to the plan's levels with the ranges of `rebinds`. False, and nothing changes, where the cache refuses one.
+bool DrawList::Impl::bind(DrawnInstance& own, Levels after, std::span<const uint8_t> shown) {
+    for (uint32_t i = 0; i < rebindCount; ++i) {
+        const Status status = cache->acquire(own.asset, rebinds[i].patch, after, rebinds[i].range);
+        if (status.ok()) continue;
+        refusal = status;
+        while (i-- > 0) cache->release(rebinds[i].range);
+        return false;
     }
-    if (needed > staging.size() - stagingUsed) {
-        return needed > staging.size()
-                   ? outOfCapacity("the change needs more indices than all of the frame's staging memory: give "
-                                   "beginFrame as many as element says, or ask for coarser levels first",
-                                   needed)
-                   : outOfCapacity("the frame's staging memory is full: ask again next frame, or give beginFrame more",
-                                   needed);
+    if (own.kind == InstanceKind::whole) releaseWhole(own.asset, own.wholeState, *cache);
+    const bool wasMixed = own.kind == InstanceKind::mixed;
+    own.kind = InstanceKind::mixed;
+    for (uint32_t i = 0; i < rebindCount; ++i) {
+        uint32_t& range = slotRanges[own.firstSlot + rebinds[i].patch];
+        if (range != kNoRange) cache->release(range);
+        range = rebinds[i].range;
     }
-    if (rebuildCount > copies.size() - copyCount) {
-        return outOfCapacity("more copies than patches in one frame: set an instance once a frame, or raise "
-                             "DrawListConfig::patchCapacity",
-                             uint64_t(copyCount) + rebuildCount);
+    for (uint32_t p = 0; p < own.patchCount; ++p) {
+        const uint32_t slot = own.firstSlot + p;
+        stats.changedPatches += wasMixed && slotLevels[slot] != after[p];
+        slotLevels[slot] = after[p];
+        if (shown[p] || slotRanges[slot] == kNoRange) continue;
+        cache->release(slotRanges[slot]);
+        slotRanges[slot] = kNoRange;
     }
-
-    uint32_t used = stagingUsed;
-    for (uint32_t i = 0; i < rebuildCount; ++i) {
-        Rebuild& r = rebuilds[i];
-        r.staging = used;
-        const uint32_t count = buildIndices(asset, r.patch, after, {representatives.data(), representatives.size()},
-                                            staging.subspan(used));
-        if (count == 0) continue;
-        r.range = arena.allocate(count);
-        if (r.range == kNoRange) {
-            for (uint32_t k = 0; k < i; ++k) {
-                if (rebuilds[k].range != kNoRange) arena.free(rebuilds[k].range);
-            }
-            return outOfCapacity("the index arena is full: ask again after framesInFlight frames, or raise "
-                                 "DrawListConfig::indexCapacity",
-                                 needed);
-        }
-        used += count;
-    }
-    stagingUsed = used;
-    return {};
+    stats.reboundPatches += rebindCount;
+    stale = true;
+    return true;
 }
 
-/// Appends a copy, or lengthens the last one where both ends meet.
-void DrawList::Impl::addCopy(const Rebuild& built) {
-    const uint32_t offset = arena.offset(built.range), count = arena.count(built.range);
-    stats.uploadBytes += count * uint32_t(sizeof(uint32_t));
-    if (copyCount > 0) {
-        CopyRange& last = copies[copyCount - 1];
-        if (last.staging + last.count == built.staging && last.arena + last.count == offset) {
-            last.count += count;
+/// Builds of a plan what fits the frame, for the cache to keep: a change that is larger than a frame's staging comes
+/// to be in the end.
+void DrawList::Impl::buildAhead(const DrawnInstance& own, Levels after, std::span<const uint8_t> shown) {
+    listRebinds(own, after, shown);
+    for (uint32_t i = 0; i < rebindCount; ++i) {
+        const Status status = cache->acquire(own.asset, rebinds[i].patch, after, rebinds[i].range);
+        if (!status.ok()) {
+            refusal = status;
             return;
         }
+        cache->release(rebinds[i].range);
     }
-    copies[copyCount++] = {built.staging, offset, count};
-}
-
-void DrawList::Impl::commit(Instance& instance, Levels after) {
-    for (uint32_t i = 0; i < rebuildCount; ++i) {
-        const Rebuild& r = rebuilds[i];
-        Slot& slot = slots[instance.firstSlot + r.patch];
-        if (slot.range != kNoRange) freeLater(slot.range);
-        slot.range = r.range;
-        if (r.range != kNoRange) addCopy(r);
-    }
-    std::copy_n(after.data(), instance.asset->patchCount(), slotLevels.data() + instance.firstSlot);
-    instance.drawn = true;
-    drawsStale |= rebuildCount > 0;
-}
-
-Status DrawList::setLevels(uint32_t id, Levels levels) {
-    assert(impl_ && impl_->inFrame && "call beginFrame first");
-    Impl& d = *impl_;
-    Instance& instance = d.at(id);
-    assert(levels.size() == instance.asset->patchCount());
-    assert(std::all_of(levels.begin(), levels.end(), [&](uint8_t l) { return l < instance.asset->levelCount(); }));
-
-    const uint32_t changed = d.listRebuilds(instance, levels);
-    const Status status = d.buildRebuilds(instance, levels);
-    const bool wasDeferred = instance.deferredFrame == d.frame;
-    if (!status.ok()) {
-        d.stats.deferredInstances += wasDeferred ? 0 : 1;
-        instance.deferredFrame = d.frame;
-        return status;
-    }
-    d.stats.deferredInstances -= wasDeferred ? 1 : 0;
-    instance.deferredFrame = 0;
-    d.stats.patchesChanged += changed;
-    d.stats.patchesRebuilt += d.rebuildCount;
-    d.commit(instance, levels);
-    return {};
 }
 
 // A frame -----------------------------------------------------------------------------------------------------------
 
-void DrawList::beginFrame(std::span<uint32_t> staging) {
-    assert(impl_ && !impl_->inFrame && "endFrame is missing");
-    assert(staging.size() <= UINT32_MAX);
-    Impl& d = *impl_;
-    ++d.frame;
-    d.inFrame = true;
-    d.staging = staging;
-    d.stagingUsed = 0;
-    d.copyCount = 0;
-    const uint32_t triangles = d.stats.triangles;
-    d.stats = {};
-    d.stats.triangles = triangles;
-    d.releaseOld();
+/// Under a budget a late instance may be finer than was selected: such ones go to their coarsest state until the
+/// frame holds it.
+void DrawList::Impl::keepBudget() {
+    const uint64_t budget = selection->stats().triangleBudget;
+    if (budget == 0 || stats.deferredInstances == 0) return;
+    for (uint32_t id = 0; id < scene->instanceEnd && stats.triangles > budget; ++id) {
+        if (!instances[id].late || instances[id].kind == InstanceKind::culled) continue;
+        becomeCoarsest(instances[id]);
+        listDraws();
+    }
 }
 
-/// Counts the draws of each material, gives each a batch, and leaves where its first draw goes in materialNext.
-void DrawList::Impl::countMaterials() {
-    std::fill_n(materialNext.data(), materialNext.size(), 0u);
-    for (uint32_t id = 0; id < instanceEnd; ++id) {
-        const Instance& instance = instances[id];
-        if (!instance.drawn) continue;
-        const Slot* first = slots.data() + instance.firstSlot;
-        for (uint32_t p = 0; p < instance.asset->patchCount(); ++p) {
-            if (first[p].range != kNoRange) ++materialNext[first[p].material];
+void DrawList::update(const Scene& scene, const Selection& selection, IndexCache& cache) {
+    assert(impl_ && "create is missing");
+    Impl& d = *impl_;
+    d.scene = &scene.impl();
+    d.selection = &selection;
+    d.cache = &cache;
+    d.stats = {.triangles = d.stats.triangles};
+    d.refusal = {};
+    d.dropGone();
+    for (uint32_t id = 0; id < d.scene->instanceEnd; ++id) {
+        if (scene.hasInstance(id)) d.follow(id);
+    }
+    if (d.stale) d.listDraws();
+    d.keepBudget();
+}
+
+/// Counts the whole instances of each state and gives them their run of drawInstances, then the mixed ones.
+void DrawList::Impl::listStates() {
+    for (uint32_t i = 0; i < activeStateCount; ++i) wholeStates[activeStates[i]].count = 0;
+    activeStateCount = 0;
+    for (uint32_t id = 0; id < scene->instanceEnd; ++id) {
+        if (instances[id].kind != InstanceKind::whole) continue;
+        const uint32_t state = instances[id].asset * kMaxWholeStates + instances[id].wholeState;
+        if (wholeStates[state].count++ == 0) activeStates[activeStateCount++] = state;
+    }
+    drawInstanceCount = 0;
+    for (uint32_t i = 0; i < activeStateCount; ++i) {
+        WholeState& state = wholeStates[activeStates[i]];
+        state.firstInstance = drawInstanceCount;
+        drawInstanceCount += std::exchange(state.count, 0);
+    }
+    for (uint32_t id = 0; id < scene->instanceEnd; ++id) {
+        const DrawnInstance& own = instances[id];
+        if (own.kind == InstanceKind::mixed) drawInstances[drawInstanceCount++] = id;
+        if (own.kind != InstanceKind::whole) continue;
+        WholeState& state = heldState(own.asset, own.wholeState);
+        drawInstances[state.firstInstance + state.count++] = id;
+    }
+}
+
+/// add(material, indexBytes, command, source) for each draw, in an order that the instances' ids give.
+template <typename Add>
+void DrawList::Impl::forDraws(Add add) {
+    const auto draw = [&](const IndexRange& range, uint32_t material, uint32_t instanceCount, uint32_t firstInstance,
+                          const DrawSource& source) {
+        if (range.indexCount == 0) return;
+        const AssetDesc& asset = scene->assets[source.asset].desc;
+        const int32_t offset = asset.vertexOffset + int32_t(range.vertexOffset);
+        add(asset.firstMaterial + material, range.indexBytes,
+            DrawCommand{range.indexCount, instanceCount, range.firstIndex, offset, firstInstance}, source);
+    };
+    uint32_t nextMixed = 0;
+    for (uint32_t i = 0; i < activeStateCount; ++i) {
+        const WholeState& state = wholeStates[activeStates[i]];
+        const uint32_t asset = activeStates[i] / kMaxWholeStates;
+        for (uint32_t m = 0; m < wholeHandles.count(state.handle); ++m) {
+            draw(cache->at(wholeRanges[state.firstRange + m]), m, state.count, state.firstInstance,
+                 {asset, format::kNone, state.finestLevel});
+        }
+        nextMixed += state.count;
+    }
+    for (; nextMixed < drawInstanceCount; ++nextMixed) {
+        const DrawnInstance& own = instances[drawInstances[nextMixed]];
+        const AssetView& asset = view(own.asset);
+        for (uint32_t p = 0; p < own.patchCount; ++p) {
+            const uint32_t slot = own.firstSlot + p;
+            if (slotRanges[slot] == kNoRange) continue;
+            draw(cache->at(slotRanges[slot]), asset.patches[p].material, 1, nextMixed,
+                 {own.asset, p, slotLevels[slot]});
         }
     }
-    drawCount = 0;
-    batchCount = 0;
-    for (uint32_t material = 0; material < materialNext.size(); ++material) {
-        const uint32_t count = materialNext[material];
-        materialNext[material] = drawCount;
-        if (count > 0) batches[batchCount++] = {material, drawCount, count};
+}
+
+/// Counts the draws of each batch, then puts each draw in its place.
+void DrawList::Impl::listDraws() {
+    stale = false;
+    stats.triangles = 0;
+    listStates();
+    std::fill_n(batchNext.data(), batchNext.size(), 0u);
+    const auto key = [](uint32_t material, uint32_t indexBytes) { return 2 * material + (indexBytes == 4); };
+    forDraws([&](uint32_t material, uint32_t indexBytes, const DrawCommand&, const DrawSource&) {
+        assert(material < config.materialCapacity && "raise DrawListConfig::materialCapacity");
+        ++batchNext[key(material, indexBytes)];
+    });
+    drawCount = batchCount = 0;
+    for (uint32_t k = 0; k < batchNext.size(); ++k) {
+        const uint32_t count = std::exchange(batchNext[k], drawCount);
+        if (count > 0) batches[batchCount++] = {k / 2, k % 2 ? 4u : 2u, drawCount, count};
         drawCount += count;
     }
+    forDraws([&](uint32_t material, uint32_t indexBytes, const DrawCommand& command, const DrawSource& source) {
+        const uint32_t at = batchNext[key(material, indexBytes)]++;
+        draws[at] = command;
+        sources[at] = source;
+        stats.triangles += uint64_t(command.indexCount / 3) * command.instanceCount;
+    });
 }
 
-void DrawList::Impl::addDraw(uint32_t id, uint32_t patch) {
-    const Instance& instance = instances[id];
-    const Slot& slot = slots[instance.firstSlot + patch];
-    if (slot.range == kNoRange) return;
-    const uint32_t draw = materialNext[slot.material]++;
-    const uint32_t count = arena.count(slot.range);
-    draws[draw] = {count, 1, arena.offset(slot.range), instance.vertexOffset, id};
-    drawPatches[draw] = {id, patch};
-    stats.triangles += count / 3;
-}
-
-void DrawList::Impl::fillDraws() {
-    stats.triangles = 0;
-    for (uint32_t id = 0; id < instanceEnd; ++id) {
-        if (!instances[id].drawn) continue;
-        for (uint32_t p = 0; p < instances[id].asset->patchCount(); ++p) addDraw(id, p);
-    }
-}
-
-void DrawList::endFrame() {
-    assert(impl_ && impl_->inFrame && "beginFrame is missing");
+void DrawList::forgetAsset(uint32_t asset, IndexCache& cache) {
+    assert(impl_);
     Impl& d = *impl_;
-    d.inFrame = false;
-    d.staging = {};
-    if (!d.drawsStale) return;
-    d.drawsStale = false;
-    d.countMaterials();
-    d.fillDraws();
+    for (uint32_t id = 0; id < d.instances.size(); ++id) {
+        if (d.instances[id].asset != asset) continue;
+        d.release(d.instances[id], cache);
+        d.instances[id] = {};
+    }
+    if (!d.assetsInSight[asset]) return;
+    for (uint32_t state = 0; state < kMaxWholeStates; ++state) {
+        if (d.heldState(asset, state).holders > 0) d.releaseWhole(asset, state, cache);
+    }
+    d.assetsInSight[asset] = 0;
+    d.stale = true;
 }
 
-std::span<const CopyRange> DrawList::copies() const {
-    return {impl_->copies.data(), impl_->copyCount};
+void DrawList::clear(IndexCache& cache) {
+    for (uint32_t asset = 0; asset < impl_->assetsInSight.size(); ++asset) forgetAsset(asset, cache);
+    impl_->drawCount = impl_->batchCount = impl_->drawInstanceCount = 0;
 }
+
+// What is drawn -----------------------------------------------------------------------------------------------------
+
 std::span<const DrawCommand> DrawList::draws() const {
     return {impl_->draws.data(), impl_->drawCount};
 }
-std::span<const DrawPatch> DrawList::drawPatches() const {
-    return {impl_->drawPatches.data(), impl_->drawCount};
+std::span<const DrawSource> DrawList::sources() const {
+    return {impl_->sources.data(), impl_->drawCount};
 }
 std::span<const DrawBatch> DrawList::batches() const {
     return {impl_->batches.data(), impl_->batchCount};
 }
-const FrameStats& DrawList::stats() const {
+std::span<const uint32_t> DrawList::drawInstances() const {
+    return {impl_->drawInstances.data(), impl_->drawInstanceCount};
+}
+const DrawStats& DrawList::stats() const {
     return impl_->stats;
+}
+const Status& DrawList::refusal() const {
+    return impl_->refusal;
+}
+InstanceKind DrawList::kind(uint32_t id) const {
+    return impl_->instances[id].kind;
+}
+uint32_t DrawList::wholeState(uint32_t id) const {
+    assert(kind(id) == InstanceKind::whole);
+    return impl_->instances[id].wholeState;
+}
+Levels DrawList::levels(uint32_t id) const {
+    assert(kind(id) == InstanceKind::mixed);
+    return {impl_->slotLevels.data() + impl_->instances[id].firstSlot, impl_->instances[id].patchCount};
 }
 
 } // namespace xgc

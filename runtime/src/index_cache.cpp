@@ -98,7 +98,6 @@ struct IndexCache::Impl : Allocated<IndexCache::Impl> {
 
     // Scratch of acquire.
     FixedArray<std::byte> key;
-    FixedArray<uint8_t> uniform; ///< levels of acquireWhole
     FixedArray<uint32_t> representatives, indices;
 
     // The frame.
@@ -106,7 +105,7 @@ struct IndexCache::Impl : Allocated<IndexCache::Impl> {
     bool inFrame = false;
     std::span<std::byte> staging;
     uint32_t stagingUsed = 0;
-    FixedArray<CopyBytes> copies;
+    FixedArray<CopyRange> copies;
     uint32_t copyCount = 0;
     IndexCacheStats stats; ///< those since beginFrame
 
@@ -139,7 +138,7 @@ bool IndexCache::Impl::allocate() {
     const bool done = assets.allocate(config.assetCapacity) && ranges.allocate(count) &&
                       keys.create(count, config.keyBytes) && arena.create(config.arenaBytes / kWord, count) &&
                       links.allocate(count) && key.allocate(stateKeyBytes(config.domainsPerPatchCapacity)) &&
-                      uniform.allocate(config.patchCapacity) && representatives.allocate(config.slotCapacity) &&
+                      representatives.allocate(config.slotCapacity) &&
                       indices.allocate(3 * size_t(config.faceCapacity)) && copies.allocate(config.copyCapacity);
     if (!done) return false;
     for (uint32_t id = 0; id < count; ++id) unused.append(id);
@@ -414,7 +413,7 @@ void IndexCache::Impl::addCopy(uint32_t offset, uint32_t run) {
     const uint32_t to = arena.offset(run) * kWord, bytes = arena.count(run) * kWord;
     stats.uploadBytes += bytes;
     if (copyCount > 0) {
-        CopyBytes& last = copies[copyCount - 1];
+        CopyRange& last = copies[copyCount - 1];
         if (last.staging + last.bytes == offset && last.arena + last.bytes == to) {
             last.bytes += bytes;
             return;
@@ -466,14 +465,27 @@ Status IndexCache::acquire(uint32_t asset, uint32_t patch, Levels levels, uint32
     return c.acquire({c.key.data(), bytes}, {view, asset, patch, patch + 1, kNone, levels}, range);
 }
 
-Status IndexCache::acquireWhole(uint32_t asset, uint32_t material, uint32_t level, uint32_t& range) {
+uint64_t IndexCache::bytesNeeded(uint32_t asset, uint32_t patch, Levels levels) const {
+    assert(impl_);
+    Impl& c = *impl_;
+    const AssetView& view = c.view(asset);
+    const size_t bytes = writePatchKey(asset, view, patch, levels, c.key.data());
+    const std::span<const std::byte> name(c.key.data(), bytes);
+    if (c.keys.find(name, KeyTable::hash(name)) != KeyTable::kNone) return 0;
+    return Source{view, asset, patch, patch + 1, kNone, levels}.byteCapacity();
+}
+
+uint64_t IndexCache::freeStagingBytes() const {
+    assert(impl_);
+    return impl_->staging.size() - impl_->stagingUsed;
+}
+
+Status IndexCache::acquireWhole(uint32_t asset, uint32_t material, uint32_t number, Levels levels, uint32_t& range) {
     assert(impl_ && impl_->inFrame && "call beginFrame first");
     Impl& c = *impl_;
     const AssetView& view = c.view(asset);
-    assert(material < view.record->materialCount && level < view.levelCount());
-    const size_t bytes = writeWholeKey(asset, material, level, c.key.data());
-    const Levels levels(c.uniform.data(), view.patchCount());
-    if (c.uniform[0] != level) std::fill_n(c.uniform.data(), c.uniform.size(), uint8_t(level));
+    assert(material < view.record->materialCount && levels.size() == view.patchCount());
+    const size_t bytes = writeWholeKey(asset, material, number, c.key.data());
     return c.acquire({c.key.data(), bytes}, {view, asset, 0, view.patchCount(), material, levels}, range);
 }
 
@@ -498,7 +510,7 @@ void IndexCache::endFrame() {
     impl_->staging = {};
 }
 
-std::span<const CopyBytes> IndexCache::copies() const {
+std::span<const CopyRange> IndexCache::copies() const {
     return {impl_->copies.data(), impl_->copyCount};
 }
 

@@ -1,8 +1,11 @@
 #include "scene.h"
 
+#include <xgc/indices.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace xgc {
 namespace {
@@ -37,7 +40,8 @@ bool Scene::Impl::allocate() {
     return assets.allocate(config.assetCapacity) &&
            patchRanges.create(config.assetPatchCapacity, config.assetCapacity) &&
            patches.allocate(config.assetPatchCapacity) &&
-           wholeErrors.allocate(size_t(config.assetCapacity) * format::kMaxLevels) &&
+           wholeErrors.allocate(size_t(config.assetCapacity) * kMaxWholeStates) &&
+           wholeTriangles.allocate(wholeErrors.size()) && levelScratch.allocate(config.assetPatchCapacity) &&
            instances.allocate(config.instanceCapacity) &&
            slotRanges.create(config.patchCapacity, config.instanceCapacity) &&
            controlRanges.create(config.steeredPartCapacity, config.instanceCapacity) &&
@@ -76,15 +80,73 @@ const SceneAsset& Scene::Impl::assetAt(uint32_t id) const {
 void Scene::Impl::fillTables(uint32_t id) {
     const SceneAsset& stored = assets[id];
     const AssetView& asset = *stored.desc.asset;
-    float* whole = wholeErrors.data() + size_t(id) * format::kMaxLevels;
-    std::fill_n(whole, asset.levelCount(), 0.0f);
     for (uint32_t p = 0; p < asset.patchCount(); ++p) {
-        const PatchBounds bounds = boundsOf(asset, asset.patches[p]);
-        patches[stored.firstPatch + p] = bounds;
+        patches[stored.firstPatch + p] = boundsOf(asset, asset.patches[p]);
+    }
+    fillWholeErrors(id);
+    const std::span<uint8_t> levels(levelScratch.data(), asset.patchCount());
+    for (uint32_t state = 0; state < stored.wholeStateCount; ++state) {
+        wholeLevels(id, state, levels);
+        uint32_t triangles = 0;
+        for (uint32_t p = 0; p < asset.patchCount(); ++p) triangles += triangleBound(asset, p, levels);
+        wholeTriangles[size_t(id) * kMaxWholeStates + state] = triangles;
+    }
+}
+
+void Scene::Impl::fillWholeErrors(uint32_t id) {
+    SceneAsset& stored = assets[id];
+    const AssetView& asset = *stored.desc.asset;
+    float least = std::numeric_limits<float>::infinity(), largest = 0;
+    for (uint32_t p = 0; p < asset.patchCount(); ++p) {
         for (uint32_t level = 0; level < asset.levelCount(); ++level) {
-            whole[level] = std::max(whole[level], asset.error(p, level) * bounds.importance);
+            const float error = asset.error(p, level) * patches[stored.firstPatch + p].importance;
+            if (error > 0) least = std::min(least, error);
+            largest = std::max(largest, error);
         }
     }
+    constexpr float kStep = 1.18920712f; // an octave in four
+    constexpr float kRange = 1.0f / (1 << 30);
+    float* errors = wholeErrors.data() + size_t(id) * kMaxWholeStates;
+    uint32_t count = 0;
+    errors[count++] = 0;
+    for (float error = std::max(least, largest * kRange); error < largest && count + 1 < kMaxWholeStates;
+         error *= kStep) {
+        errors[count++] = error;
+    }
+    if (largest > 0) errors[count++] = largest;
+    stored.wholeStateCount = count;
+}
+
+void Scene::Impl::wholeLevels(uint32_t id, uint32_t state, std::span<uint8_t> levels) const {
+    const SceneAsset& stored = assets[id];
+    const AssetView& asset = *stored.desc.asset;
+    const float largest = errorsOf(id)[state];
+    for (uint32_t p = 0; p < asset.patchCount(); ++p) {
+        const float importance = patches[stored.firstPatch + p].importance;
+        uint32_t level = 0;
+        while (level + 1 < asset.levelCount() && asset.error(p, level + 1) * importance <= largest) ++level;
+        levels[p] = uint8_t(level);
+    }
+}
+
+uint32_t Scene::wholeStateCount(uint32_t asset) const {
+    return impl_->assetAt(asset).wholeStateCount;
+}
+
+float Scene::wholeError(uint32_t asset, uint32_t state) const {
+    assert(state < impl_->assetAt(asset).wholeStateCount);
+    return impl_->errorsOf(asset)[state];
+}
+
+void Scene::wholeLevels(uint32_t asset, uint32_t state, std::span<uint8_t> levels) const {
+    assert(state < impl_->assetAt(asset).wholeStateCount);
+    assert(levels.size() == impl_->assetAt(asset).desc.asset->patchCount());
+    impl_->wholeLevels(asset, state, levels);
+}
+
+uint32_t Scene::wholeTriangles(uint32_t asset, uint32_t state) const {
+    assert(state < impl_->assetAt(asset).wholeStateCount);
+    return impl_->trianglesOf(asset, state);
 }
 
 Status Scene::addAsset(const AssetDesc& desc, uint32_t& id) {
@@ -165,6 +227,10 @@ void Scene::setPlacement(uint32_t id, const Placement& placement) {
 
 const Placement& Scene::placement(uint32_t id) const {
     return impl_->at(id).placement;
+}
+
+void Scene::setVisible(uint32_t id, bool visible) {
+    impl_->at(id).visible = visible;
 }
 
 uint32_t Scene::assetOf(uint32_t id) const {

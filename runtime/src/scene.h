@@ -19,11 +19,15 @@ struct PatchBounds {
     uint32_t part;
 };
 
+/// Of one asset: thirty octaves in quarters, zero, and the largest error itself.
+inline constexpr uint32_t kMaxWholeStates = 124;
+
 struct SceneAsset {
     AssetDesc desc{}; ///< no asset: the id is free
     uint32_t patchRange = format::kNone;
     uint32_t firstPatch = 0; ///< in Scene::Impl::patches
     uint32_t instanceCount = 0;
+    uint32_t wholeStateCount = 0;
     uint32_t nextFree = format::kNone;
 };
 
@@ -31,6 +35,7 @@ struct SceneInstance {
     uint32_t generation = 0; ///< odd while it is there
     uint32_t asset = 0;
     Placement placement{};
+    bool visible = true;
     uint32_t slotRange = format::kNone;
     uint32_t firstSlot = 0; ///< of its patches, in the arrays of views
     uint32_t controlRange = format::kNone;
@@ -47,7 +52,10 @@ struct Scene::Impl : Allocated<Scene::Impl> {
     uint32_t freeAsset = format::kNone;
     RangeAllocator patchRanges;
     FixedArray<PatchBounds> patches;
-    FixedArray<float> wholeErrors; ///< asset * kMaxLevels + level: largest error times importance over its patches
+    // asset * kMaxWholeStates + state:
+    FixedArray<float> wholeErrors;
+    FixedArray<uint32_t> wholeTriangles;
+    FixedArray<uint8_t> levelScratch; ///< of one asset
 
     FixedArray<SceneInstance> instances;
     uint32_t instanceEnd = 0;
@@ -59,6 +67,14 @@ struct Scene::Impl : Allocated<Scene::Impl> {
 
     bool allocate();
     void fillTables(uint32_t asset);
+    void fillWholeErrors(uint32_t asset);
+    std::span<const float> errorsOf(uint32_t asset) const {
+        return {wholeErrors.data() + size_t(asset) * kMaxWholeStates, assets[asset].wholeStateCount};
+    }
+    uint32_t trianglesOf(uint32_t asset, uint32_t state) const {
+        return wholeTriangles[size_t(asset) * kMaxWholeStates + state];
+    }
+    void wholeLevels(uint32_t asset, uint32_t state, std::span<uint8_t> levels) const;
     const SceneAsset& assetAt(uint32_t id) const;
     const SceneInstance& at(uint32_t id) const;
     SceneInstance& at(uint32_t id) { return const_cast<SceneInstance&>(static_cast<const Impl*>(this)->at(id)); }

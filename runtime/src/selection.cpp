@@ -6,7 +6,7 @@
 // An update looks at each instance once (without a budget), on any thread:
 //
 //   enter        forget what an earlier instance of this id left
-//   decideWhole  far and unsteered: one level for all of it; near: a level each patch; in the belt between: as it was
+//   decideWhole  far and unsteered: one state for all of it; near: a level each patch; in the belt between: as it was
 //   cull         instance, then patches where it crosses the frustum
 //   choose       levels by the policy, then controls, reference and cones
 //
@@ -93,10 +93,9 @@ Selection::Impl::Subject Selection::Impl::subject(uint32_t id) {
 }
 
 LevelTest Selection::Impl::Subject::wholeTest(const LevelPolicy& by, const Scene::Impl& in) const {
-    const float* errors = in.wholeErrors.data() + size_t(instance.asset) * format::kMaxLevels;
     const Sphere sphere = sphereOf(*asset.record);
     // The errors have the parts' importance in them.
-    return {by, {errors, asset.levelCount()}, 1, sphere.radius, standingFor(by, instance.placement, sphere)};
+    return {by, in.errorsOf(instance.asset), 1, sphere.radius, standingFor(by, instance.placement, sphere)};
 }
 
 LevelTest Selection::Impl::Subject::patchTest(const LevelPolicy& by, uint32_t patch) const {
@@ -130,9 +129,11 @@ void Selection::Impl::decideWhole(const Subject& s) {
         s.own.whole = beyond(was ? inner : outer, at);
         s.own.inBelt = !s.own.whole && beyond(inner * keep, at);
     }
-    if (s.own.whole && !was) s.own.wholeLevel = uint8_t(kNoLevel);
-    if (!s.own.whole && (was || s.own.fresh)) {
-        std::fill(s.wanted.begin(), s.wanted.end(), was ? s.own.wholeLevel : uint8_t(kNoLevel));
+    if (s.own.whole && !was) s.own.wholeState = uint8_t(kNoLevel);
+    if (!s.own.whole && was && s.own.wholeState != kNoLevel) {
+        scene->wholeLevels(s.instance.asset, s.own.wholeState, s.wanted);
+    } else if (!s.own.whole && (was || s.own.fresh)) {
+        std::fill(s.wanted.begin(), s.wanted.end(), uint8_t(kNoLevel));
     }
     s.own.fresh = false;
 }
@@ -150,7 +151,7 @@ void Selection::Impl::cull(const Subject& s) {
     };
     const Side side = sideOf(frustum, bounds);
     s.own.kind = s.own.whole ? InstanceKind::whole : InstanceKind::mixed;
-    if (side == Side::outside || small(bounds)) s.own.kind = InstanceKind::culled;
+    if (!s.instance.visible || side == Side::outside || small(bounds)) s.own.kind = InstanceKind::culled;
     if (s.own.kind != InstanceKind::mixed) return;
     for (size_t p = 0; p < s.patches.size(); ++p) {
         const Sphere sphere{glm::vec3(s.patches[p].sphere), s.patches[p].sphere.w};
@@ -176,11 +177,11 @@ uint32_t Selection::Impl::withReference(const Subject& s, uint32_t patch, uint32
 }
 
 void Selection::Impl::chooseWhole(const Subject& s, ChunkCount& count) {
-    uint32_t level = s.wholeTest(policy, *scene).next(s.own.wholeLevel);
-    if (s.reference && s.referenceOwn->wholeLevel != kNoLevel) {
-        level = std::min<uint32_t>(level, s.referenceOwn->wholeLevel + desc.coarserThanReference);
+    uint32_t level = s.wholeTest(policy, *scene).next(s.own.wholeState);
+    if (s.reference && s.referenceOwn->wholeState != kNoLevel) {
+        level = std::min<uint32_t>(level, s.referenceOwn->wholeState + desc.coarserThanReference);
     }
-    s.own.wholeLevel = uint8_t(level);
+    s.own.wholeState = uint8_t(level);
     if (s.own.kind == InstanceKind::whole) ++count.stats.wholeInstances;
 }
 
@@ -256,7 +257,7 @@ void Selection::set(const Scene& scene, uint32_t id, Levels levels) {
     const Impl::Subject s = d.subject(id);
     assert(levels.size() == s.asset.patchCount());
     assert(std::all_of(levels.begin(), levels.end(), [&](uint8_t l) { return l < s.asset.levelCount(); }));
-    s.own.kind = InstanceKind::mixed;
+    s.own.kind = s.instance.visible ? InstanceKind::mixed : InstanceKind::culled;
     s.own.whole = false;
     s.own.fresh = false;
     std::copy(levels.begin(), levels.end(), s.levels.begin());
@@ -272,9 +273,9 @@ InstanceKind Selection::kind(uint32_t id) const {
                : InstanceKind::culled;
 }
 
-uint32_t Selection::wholeLevel(uint32_t id) const {
+uint32_t Selection::wholeState(uint32_t id) const {
     assert(kind(id) == InstanceKind::whole);
-    return impl_->instances[id].wholeLevel;
+    return impl_->instances[id].wholeState;
 }
 
 Levels Selection::levels(uint32_t id) const {

@@ -13,7 +13,7 @@ struct ViewInstance {
     InstanceKind kind = InstanceKind::culled;
     bool whole = false;            ///< takes one level, whether culled or not
     bool fresh = true;             ///< its patches have no level yet
-    uint8_t wholeLevel = kNoLevel; ///< kept while whole
+    uint8_t wholeState = kNoLevel; ///< kept while whole
     bool inBelt = false;           ///< mixed, but near where it would be whole
 };
 

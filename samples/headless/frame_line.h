@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene.h"
+#include "asset_grid.h"
 
 #include <string>
 

@@ -1,8 +1,8 @@
 // Flies a camera over baked assets and writes a picture and a line of JSON a frame: the whole of what a renderer does
 // with xgc, without a window.
+#include "asset_grid.h"
 #include "camera_path.h"
 #include "frame_line.h"
-#include "scene.h"
 
 #include <xgc/bake/image.h>
 #include <xgc/vulkan/headless_device.h>
@@ -14,11 +14,15 @@
 
 #include <array>
 #include <cstdio>
+#include <limits>
 
 namespace {
 
 using namespace xgc;
 using namespace xgc::headless;
+
+/// A patch keeps its level while its distance changes by less than this part.
+constexpr float kHysteresis = 0.05f;
 
 struct Options {
     std::vector<std::filesystem::path> inputs;
@@ -27,6 +31,7 @@ struct Options {
     uint32_t frames = 60;
     float errorPixels = 1;
     std::vector<float> bands; ///< empty: errorPixels decides
+    uint32_t budget = 0;      ///< triangles a frame; 0: as many as it takes
     std::string mode = "shaded";
     uint32_t width = 1280, height = 720;
     uint32_t instances = 1;
@@ -35,7 +40,7 @@ struct Options {
 // Destroyed from the last up: the target waits for its frames before anything that they use goes.
 struct App {
     Options options;
-    Scene scene;
+    AssetGrid scene;
     CameraPath path;
     vulkan::HeadlessDevice device;
     vulkan::Context context;
@@ -73,26 +78,29 @@ vulkan::Camera cameraAt(const App& app, uint32_t frame) {
     return camera;
 }
 
-/// Asks for the levels that the camera needs. An instance that cannot change yet keeps what it has: no hole, no crack.
-uint32_t setLevels(App& app, const vulkan::Camera& camera) {
-    const View view = makeView(camera.eye, camera.fovY, float(app.options.height));
-    uint32_t deferred = 0;
-    for (SceneInstance& instance : app.scene.instances()) {
-        if (app.options.bands.empty()) {
-            select(*instance.asset, instance.placement, view, ErrorPixels{app.options.errorPixels}, instance.levels);
-        } else {
-            select(*instance.asset, instance.placement, view, DistanceBands{app.options.bands}, instance.levels);
-        }
-        deferred += app.renderer.setLevels(instance.handle, instance.levels).ok() ? 0 : 1;
+/// What the camera asks for. An instance that cannot change yet keeps what it has: no hole, no crack.
+SelectionDesc selectionFor(const App& app, const vulkan::Camera& camera) {
+    SelectionDesc desc;
+    desc.view = makeView(camera.eye, camera.fovY, float(app.options.height));
+    desc.view.nearest = camera.nearPlane;
+    desc.frustum = makeFrustum(camera.worldToClip());
+    desc.pixels = app.options.errorPixels;
+    desc.hysteresis = kHysteresis;
+    if (!app.options.bands.empty()) {
+        desc.policy = Policy::distanceBands;
+        desc.bands = app.options.bands;
     }
-    return deferred;
+    // One draw of a whole asset has one colour: these two colour patches.
+    if (app.options.mode == "parts") desc.wholeBeyond = std::numeric_limits<float>::infinity();
+    desc.triangleBudget = app.options.budget;
+    return desc;
 }
 
 /// One frame, from levels to the queue. `ticket` names it for reading back.
-Status drawFrame(App& app, const vulkan::Camera& camera, uint32_t& deferred, uint64_t& ticket) {
+Status drawFrame(App& app, const vulkan::Camera& camera, uint64_t& ticket) {
     Status status = app.renderer.beginFrame();
     if (!status.ok()) return status;
-    deferred = setLevels(app, camera);
+    app.renderer.select(0, selectionFor(app, camera));
     app.renderer.endFrame();
 
     VkCommandBuffer cmd = VK_NULL_HANDLE;
@@ -123,13 +131,11 @@ bake::Status writeFrame(App& app, uint64_t ticket, uint32_t frame) {
 /// Frames from the first camera until every instance stands at the levels that it asks for: assets arrive in pieces.
 bake::Status settle(App& app) {
     const vulkan::Camera camera = cameraAt(app, 0);
-    uint64_t sent = 1;
-    for (uint32_t deferred = 1; deferred > 0 && sent > 0;) {
+    do {
         uint64_t ticket = 0;
-        const Status status = drawFrame(app, camera, deferred, ticket);
+        const Status status = drawFrame(app, camera, ticket);
         if (!status.ok()) return fromRuntime(status);
-        sent = app.renderer.stats().uploadBytes;
-    }
+    } while (app.renderer.stats().uploadBytes > 0);
     return {};
 }
 
@@ -137,9 +143,8 @@ bake::Status settle(App& app) {
 bake::Status fly(App& app) {
     uint64_t previous = 0;
     for (uint32_t frame = 0; frame < app.options.frames; ++frame) {
-        uint32_t deferred = 0;
         uint64_t ticket = 0;
-        const Status status = drawFrame(app, cameraAt(app, frame), deferred, ticket);
+        const Status status = drawFrame(app, cameraAt(app, frame), ticket);
         if (!status.ok()) return fromRuntime(status);
         fmt::print("{}\n", frameLine(frame, app.renderer, app.scene.instances()));
         if (previous > 0) {
@@ -182,6 +187,9 @@ void addOptions(CLI::App& cli, Options& options) {
     cli.add_option("--bands", options.bands, "Distances, in radii of the asset, at which levels 1, 2, ... begin")
         ->delimiter(',')
         ->excludes(error);
+    cli.add_option("--budget", options.budget,
+                   "At most so many triangles a frame, at as few pixels of error as that takes")
+        ->check(CLI::Range(1u, 1u << 30));
     cli.add_option("--mode", options.mode, "How it is coloured")
         ->check(CLI::IsMember({"shaded", "parts", "levels", "wire"}))
         ->capture_default_str();
@@ -211,6 +219,10 @@ int main(int argc, char** argv) {
         cli.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         return cli.exit(error) == 0 ? 0 : int(bake::Outcome::usage);
+    }
+    if (app.options.budget > 0 && !app.options.bands.empty()) {
+        fmt::print(stderr, "xgc_headless: --budget goes by pixels of error, --bands by distance: give one of them\n");
+        return int(bake::Outcome::usage);
     }
     if (!std::is_sorted(app.options.bands.begin(), app.options.bands.end())) {
         fmt::print(stderr, "xgc_headless: --bands must rise\n");

@@ -2,7 +2,6 @@
 // draw in each frame. Usage: xgc_hello FILE.xgc
 
 #include <xgc/draw_list.h>
-#include <xgc/select.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -47,56 +46,77 @@ bool succeeded(const xgc::Status& status) {
     return status.ok();
 }
 
-/// A draw list with room for one instance: all it draws, and what frames in flight still draw.
-bool createFor(const xgc::AssetView& asset, xgc::DrawList& list, uint32_t& instance) {
-    const xgc::format::AssetRecord& record = *asset.record;
-    xgc::DrawListConfig config;
-    config.instanceCapacity = 1;
-    config.patchCapacity = record.patchCount;
-    config.materialCapacity = record.materialCount;
-    config.slotCapacity = xgc::scratchCapacity(asset);
-    config.domainCapacity = std::max(record.domainCount, 1u);
-    config.indexCapacity = uint32_t(std::min<uint64_t>(3ull * record.faceCount * (kFramesInFlight + 1), UINT32_MAX));
-    config.framesInFlight = kFramesInFlight;
-    return succeeded(list.create(config)) && succeeded(list.addInstance({.asset = &asset}, instance));
-}
+/// All that is kept from frame to frame, with room for one instance of one asset.
+struct World {
+    xgc::Scene scene;
+    xgc::Selection selection; // one a view
+    xgc::DrawList list;       // likewise
+    xgc::IndexCache cache;    // one for all views
+    std::vector<std::byte> staging;
+    uint32_t instance = 0;
+};
 
-void printRow(double distance, const std::vector<uint8_t>& levels, float error, const xgc::DrawList& list) {
-    const auto [finest, coarsest] = std::minmax_element(levels.begin(), levels.end());
-    const xgc::FrameStats& stats = list.stats();
-    std::printf("%9.2f  %6d  %8d  %8.3f  %10u  %6zu  %8zu  %9u  %7zu  %12u\n", distance, *finest, *coarsest,
-                double(error), stats.triangles, list.draws().size(), list.batches().size(), stats.patchesRebuilt,
-                list.copies().size(), stats.uploadBytes);
+bool create(World& world, const xgc::AssetView& asset) {
+    const xgc::format::AssetRecord& record = *asset.record;
+    xgc::SceneConfig scene;
+    scene.assetCapacity = scene.instanceCapacity = 1;
+    scene.assetPatchCapacity = scene.patchCapacity = record.patchCount;
+    xgc::DrawListConfig draws;
+    draws.scene = scene;
+    draws.materialCapacity = record.materialCount;
+    draws.domainCapacity = std::max(record.domainCount, 1u);
+    xgc::IndexCacheConfig cache;
+    cache.arenaBytes = uint32_t(std::min<uint64_t>(24ull * record.faceCount * (kFramesInFlight + 1), UINT32_MAX));
+    cache.assetCapacity = 1;
+    cache.slotCapacity = xgc::scratchCapacity(asset);
+    cache.faceCapacity = record.maxPatchFaces;
+    cache.patchCapacity = record.patchCount;
+    cache.framesInFlight = kFramesInFlight;
+    world.staging.resize(24ull * record.faceCount); // the most that one frame may upload
+    uint32_t id = 0;
+    return succeeded(world.scene.create(scene)) && succeeded(world.selection.create(scene)) &&
+           succeeded(world.list.create(draws)) && succeeded(world.cache.create(cache)) &&
+           succeeded(world.scene.addAsset({.asset = &asset}, id)) && succeeded(world.cache.addAsset(id, asset)) &&
+           succeeded(world.scene.addInstance(id, {}, world.instance));
 }
 
 /// One frame: choose levels, turn them into copies and draws.
-bool frame(const xgc::AssetView& asset, uint32_t instance, const xgc::View& view, xgc::DrawList& list,
-           std::vector<uint8_t>& levels, std::span<uint32_t> staging) {
-    xgc::select(asset, xgc::Placement{}, view, xgc::ErrorPixels{1}, levels);
-    list.beginFrame(staging);
-    const bool ok = succeeded(list.setLevels(instance, levels));
-    list.endFrame();
-    // A renderer now copies list.copies() from staging into its index buffer, and for each of list.batches() binds the
-    // material and draws its run of list.draws().
-    return ok;
+void frame(World& world, const xgc::View& view) {
+    xgc::SelectionDesc desc;
+    desc.view = view;
+    world.selection.update(world.scene, desc);
+    world.cache.beginFrame(world.staging);
+    world.list.update(world.scene, world.selection, world.cache);
+    world.cache.endFrame();
+    // A renderer now copies world.cache.copies() from staging into its index buffer, and for each of list.batches()
+    // binds the material and the index buffer at its size of index, and draws the batch's run of list.draws().
+}
+
+void printRow(double distance, const World& world) {
+    const xgc::DrawList& list = world.list;
+    const bool whole = list.kind(world.instance) == xgc::InstanceKind::whole;
+    uint32_t finest = UINT32_MAX, coarsest = 0;
+    for (const xgc::DrawSource& source : list.sources()) {
+        finest = std::min(finest, source.level);
+        coarsest = std::max(coarsest, source.level);
+    }
+    const xgc::IndexCacheStats built = world.cache.stats();
+    std::printf("%9.2f  %-5s  %6u  %8u  %10llu  %6zu  %6u  %7zu  %12u\n", distance, whole ? "whole" : "mixed", finest,
+                coarsest, static_cast<unsigned long long>(list.stats().triangles), list.draws().size(), built.misses,
+                world.cache.copies().size(), built.uploadBytes);
 }
 
 /// Flies away from the asset, from its surface to 500 of its radii.
 bool fly(const xgc::AssetView& asset) {
-    xgc::DrawList list;
-    uint32_t instance = 0;
-    if (!createFor(asset, list, instance)) return false;
-    std::vector<uint8_t> levels(asset.patchCount());
-    std::vector<uint32_t> staging(size_t(3) * asset.record->faceCount);
-
-    std::printf(
-        " distance  finest  coarsest  error px   triangles   draws   batches    rebuilt   copies  upload bytes\n");
+    World world;
+    if (!create(world, asset)) return false;
+    std::printf(" distance  kind   finest  coarsest   triangles   draws   built   copies  upload bytes\n");
     const float* center = asset.record->sphereCenter;
     for (float radii = 1; radii < 500; radii *= 1.6f) {
         const float distance = radii * asset.record->sphereRadius;
-        const xgc::View view = xgc::makeView({center[0], center[1], center[2] + distance}, 1.0f, 1080);
-        if (!frame(asset, instance, view, list, levels, staging)) return false;
-        printRow(double(distance), levels, xgc::projectedError(asset, {}, view, levels), list);
+        frame(world, xgc::makeView({center[0], center[1], center[2] + distance}, 1.0f, 1080));
+        printRow(double(distance), world);
+        if (!succeeded(world.list.refusal())) return false;
     }
     return true;
 }

@@ -133,20 +133,21 @@ TEST_CASE("index ranges past 128 MiB are drawn alike") {
     Stage small(gpu, {}, singleSampled(96, 96));
     const Picture expected = small.draw(small.place(asset.view, {}, view), finest(asset.view), view);
 
-    // Twelve instances of a million triangles are built before the asset's indices, and never drawn.
+    // Twelve assets of a million triangles are built before the asset's indices, and never drawn.
     const std::vector<glm::uvec3> many(1'000'000, glm::uvec3(0, 1, 2));
     const HandAsset filler(cube.positions, many, 100'000);
     vulkan::RendererConfig config;
     config.slotCapacity = 300'000;
-    config.indexCapacity = 60u << 20;
+    config.indexBytes = 240u << 20;
+    config.vertexArenaBytes = 480 * kMiB;
+    config.narrowIndices = false;
     Stage large(gpu, config, singleSampled(96, 96));
-    vulkan::AssetHandle handle;
-    XGC_REQUIRE_OK(large.renderer.addAsset(filler.view, handle));
     const vulkan::InstanceHandle instance = large.place(asset.view, {}, view);
     std::vector<vulkan::InstanceHandle> fillers(12);
     for (vulkan::InstanceHandle& one : fillers) {
-        XGC_REQUIRE_OK(large.renderer.addInstance(handle, {}, one));
+        one = large.place(filler.view, {}, view);
         sendFrame(large, one, finest(filler.view));
+        REQUIRE(large.renderer.stats().deferredInstances == 0);
     }
     sendFrame(large, instance, finest(asset.view));
     for (const vulkan::InstanceHandle& one : fillers) XGC_REQUIRE_OK(large.renderer.removeInstance(one));
@@ -164,7 +165,7 @@ TEST_CASE("the arena takes assets again and again while frames are in flight") {
     const uint64_t bytes = (asset.view.vertexStreams[0].bytes.size() + 63) / 64 * 64;
     vulkan::RendererConfig config;
     config.vertexArenaBytes = 4 * bytes; // the one that is drawn and those that frames in flight still read
-    config.indexCapacity = 20 * asset.view.record->faceCount;
+    config.indexBytes = 80 * asset.view.record->faceCount;
     config.stagingBytes = 128 * 1024;
     Stage stage(gpu, config, singleSampled(32, 32));
     Picture first;

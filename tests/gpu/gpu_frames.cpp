@@ -100,7 +100,7 @@ TEST_CASE("the index arena holds what buildIndices writes") {
     const AssetView& asset = torus.view;
     const vulkan::ViewDesc view = outside(asset);
     vulkan::RendererConfig config;
-    config.indexCapacity = 20 * asset.record->faceCount;
+    config.indexBytes = 160 * asset.record->faceCount;
     Stage stage(gpu, config, singleSampled(32, 32));
     const vulkan::InstanceHandle instance = stage.place(asset, {}, view);
     std::mt19937 random(1);
@@ -109,15 +109,23 @@ TEST_CASE("the index arena holds what buildIndices writes") {
         const std::vector<uint8_t> levels = randomLevels(asset, random);
         stage.draw(instance, levels, view);
         const std::vector<uint32_t> arena =
-            readBuffer(gpu, stage, stage.renderer.geometry().indices, config.indexCapacity);
+            readBuffer(gpu, stage, stage.renderer.geometry().indices, config.indexBytes / 4);
         const DrawList& list = stage.renderer.drawList();
         uint32_t wrong = 0, triangles = 0;
-        for (size_t i = 0; i < list.draws().size(); ++i) {
-            const DrawCommand& draw = list.draws()[i];
-            const uint32_t count = buildIndices(asset, list.drawPatches()[i].patch, levels, scratch, expected);
-            wrong += count != draw.indexCount ||
-                     !std::equal(expected.begin(), expected.begin() + count, arena.begin() + draw.firstIndex);
-            triangles += count / 3;
+        for (const DrawBatch& batch : list.batches()) {
+            for (uint32_t i = batch.firstDraw; i < batch.firstDraw + batch.drawCount; ++i) {
+                const DrawCommand& draw = list.draws()[i];
+                const uint32_t count = buildIndices(asset, list.sources()[i].patch, levels, scratch, expected);
+                std::vector<uint32_t> drawn(count);
+                for (uint32_t k = 0; k < count && count == draw.indexCount; ++k) {
+                    uint32_t index = 0;
+                    const size_t at = size_t(draw.firstIndex + k) * batch.indexBytes;
+                    std::memcpy(&index, reinterpret_cast<const char*>(arena.data()) + at, batch.indexBytes);
+                    drawn[k] = index + uint32_t(draw.vertexOffset);
+                }
+                wrong += !std::equal(drawn.begin(), drawn.end(), expected.begin());
+                triangles += count / 3;
+            }
         }
         CHECK(wrong == 0);
         CHECK(triangles == stage.renderer.stats().triangles);
@@ -157,7 +165,7 @@ size_t drawFrames(const Gpu& gpu) {
     const AssetView& asset = torus.view;
     vulkan::RendererConfig config;
     config.framesInFlight = 3;
-    config.indexCapacity = 60 * asset.record->faceCount;
+    config.indexBytes = 240 * asset.record->faceCount;
     Stage stage(gpu, config, singleSampled(64, 48));
     vulkan::ViewDesc view = outside(asset);
     std::vector<vulkan::InstanceHandle> instances;

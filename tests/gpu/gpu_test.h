@@ -131,6 +131,8 @@ public:
         XGC_REQUIRE_OK(renderer.beginFrame());
         XGC_REQUIRE_OK(renderer.setLevels(instance, levels));
         renderer.endFrame();
+        INFO(text(renderer.drawList().refusal()));
+        REQUIRE(renderer.stats().deferredInstances == 0);
         return read(submit(view));
     }
 

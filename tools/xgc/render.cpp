@@ -130,7 +130,7 @@ Status createStudio(Studio& studio, const AssetView& asset, VkExtent2D size) {
     const AssetView* assets[] = {&asset};
     vulkan::RendererConfig base;
     base.vertexArenaBytes = 0;
-    base.indexCapacity = 3;
+    base.indexBytes = 64;
     vulkan::OffscreenDesc desc;
     desc.size = size;
     desc.supersampling = 2;
@@ -166,6 +166,7 @@ Status drawStill(Studio& studio, const AssetView& asset, Levels levels, const vu
         drawn = studio.renderer.resident(handle);
         if (drawn) status = studio.renderer.setLevels(instance, levels);
         studio.renderer.endFrame();
+        drawn &= studio.renderer.stats().deferredInstances == 0;
         if (status.ok()) status = drawFrame(studio, view, frame);
     }
     if (!status.ok()) return status;

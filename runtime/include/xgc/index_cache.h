@@ -7,7 +7,7 @@
 namespace xgc {
 
 /// Bytes to copy from the frame's staging memory into the index arena: multiples of 4, as all three are.
-struct CopyBytes {
+struct CopyRange {
     uint32_t staging;
     uint32_t arena;
     uint32_t bytes;
@@ -96,8 +96,12 @@ public:
     /// (for a full arena, ranges that nobody holds may be gone). The status' element is the bytes that staging or arena
     /// must have for it at most, or the value of the setting that the message names.
     Status acquire(uint32_t asset, uint32_t patch, Levels levels, uint32_t& range);
-    /// Holds the triangles of all patches of a material with the whole asset at one level, as one range.
-    Status acquireWhole(uint32_t asset, uint32_t material, uint32_t level, uint32_t& range);
+    /// Bytes of staging that `acquire` would take at most: none where the cache has the range.
+    uint64_t bytesNeeded(uint32_t asset, uint32_t patch, Levels levels) const;
+    uint64_t freeStagingBytes() const;
+    /// Holds the triangles of all patches of a material in a state of the whole asset, as one range. `number` names the
+    /// state: the same levels in all calls with it.
+    Status acquireWhole(uint32_t asset, uint32_t material, uint32_t number, Levels levels, uint32_t& range);
     /// Holds it once more. In or between frames, as release.
     void hold(uint32_t range);
     void release(uint32_t range);
@@ -106,7 +110,7 @@ public:
     IndexRange at(uint32_t range) const;
 
     /// Valid from endFrame to the next beginFrame.
-    std::span<const CopyBytes> copies() const;
+    std::span<const CopyRange> copies() const;
     /// Looks through free runs of the arena: for once a frame, not for every range.
     IndexCacheStats stats() const;
 

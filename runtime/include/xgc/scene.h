@@ -59,6 +59,8 @@ public:
     void removeInstance(uint32_t instance);
     void setPlacement(uint32_t instance, const Placement& placement);
     const Placement& placement(uint32_t instance) const;
+    /// An instance that is not visible is culled in every view. They start visible.
+    void setVisible(uint32_t instance, bool visible);
     uint32_t assetOf(uint32_t instance) const;
 
     /// Steers a part of one instance. Fails only where steeredPartCapacity is taken.
@@ -66,6 +68,15 @@ public:
     PartControl part(uint32_t instance, uint32_t part) const;
     /// Gives all parts of the instance back to the policies.
     void clearParts(uint32_t instance);
+
+    /// States of an asset as a whole: in each, every patch is at the coarsest level whose error, times its part's
+    /// importance, is at most the state's. These errors rise by a quarter of an octave, from 0 to the asset's largest.
+    uint32_t wholeStateCount(uint32_t asset) const;
+    float wholeError(uint32_t asset, uint32_t state) const;
+    /// `levels`: patchCount entries.
+    void wholeLevels(uint32_t asset, uint32_t state, std::span<uint8_t> levels) const;
+    /// Triangles of the state, or somewhat more.
+    uint32_t wholeTriangles(uint32_t asset, uint32_t state) const;
 
     /// Ids of instances lie below this; not all of them name one.
     uint32_t instanceEnd() const;

@@ -54,8 +54,8 @@ struct SelectionDesc {
     const Selection* reference = nullptr;
     uint32_t coarserThanReference = 0;
 
-    /// From so many radii of an asset's bounds on, an instance whose parts nobody steers takes one level as a whole.
-    /// Infinite: never.
+    /// From so many radii of an asset's bounds on, an instance whose parts nobody steers is in one of the states of
+    /// Scene::wholeLevels, decided at once. Infinite: never.
     float wholeBeyond = 6;
 
     JobSystem jobs;
@@ -63,7 +63,7 @@ struct SelectionDesc {
 
 struct SelectionStats {
     uint32_t visibleInstances = 0;
-    uint32_t wholeInstances = 0;    ///< of those: at one level, decided at once
+    uint32_t wholeInstances = 0;    ///< of those: decided at once
     uint32_t consideredPatches = 0; ///< of the others
     uint32_t culledPatches = 0;     ///< of those
     uint32_t changedPatches = 0;    ///< of those: other level than in the last update
@@ -72,13 +72,13 @@ struct SelectionStats {
     uint32_t triangleBudget = 0; ///< the desc's
     uint64_t triangleBound = 0;  ///< the levels draw no more than this
     bool overBudget = false;     ///< even the coarsest levels, which were chosen then, exceed it
-    float pixelsBound = 0;       ///< where asked for: no choice of levels (of one, for whole instances) holds less
+    float pixelsBound = 0;       ///< where asked for: no choice of levels (of a state, for whole instances) holds less
 };
 
 /// How an instance is drawn in a view.
 enum class InstanceKind : uint32_t {
     culled, ///< not at all
-    whole,  ///< all patches at `wholeLevel`
+    whole,  ///< in state `wholeState` of Scene::wholeLevels
     mixed,  ///< patches at `levels`, where `visible`
 };
 
@@ -106,7 +106,7 @@ public:
     void set(const Scene& scene, uint32_t instance, Levels levels);
 
     InstanceKind kind(uint32_t instance) const;
-    uint32_t wholeLevel(uint32_t instance) const;
+    uint32_t wholeState(uint32_t instance) const;
     /// Of an instance of kind mixed: a level each patch, and 1 where it is drawn.
     Levels levels(uint32_t instance) const;
     std::span<const uint8_t> visible(uint32_t instance) const;

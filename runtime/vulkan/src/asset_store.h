@@ -16,6 +16,7 @@ namespace xgc::vulkan {
 struct StoredAsset {
     AssetView view;
     uint32_t generation = 0; ///< odd while it is there
+    uint32_t sceneAsset = 0; ///< its id in the renderer's scene
     uint32_t instanceCount = 0;
     RangeList::Range bytes;     ///< in the vertex arena, units of AssetStore::kAlignment
     RangeList::Range materials; ///< in the renderer's list

@@ -8,22 +8,27 @@
 namespace xgc::vulkan {
 
 /// What the host writes anew each frame for the shaders and the indirect draws: one buffer, a part a frame in flight.
+///
+///     [ passes | instances | view 0: draws, commands, instance ids | view 1: ... ]
 class FrameRecords {
 public:
     struct Capacities {
+        uint32_t passes;
         uint32_t views;
         uint32_t instances;
-        uint32_t draws;
+        uint32_t draws; ///< of each view
         uint32_t framesInFlight;
     };
 
     Status create(const Context& context, const Capacities& capacities) {
         const auto align = [](VkDeviceSize bytes) { return (bytes + 63) / 64 * 64; };
         frames_ = capacities.framesInFlight;
-        instances_ = align(capacities.views * sizeof(shader::ViewRecord));
-        draws_ = instances_ + align(capacities.instances * sizeof(shader::InstanceRecord));
-        commands_ = draws_ + align(capacities.draws * sizeof(shader::DrawRecord));
-        bytesPerFrame_ = commands_ + align(capacities.draws * sizeof(DrawCommand));
+        instances_ = align(capacities.passes * sizeof(shader::ViewRecord));
+        views_ = instances_ + align(capacities.instances * sizeof(shader::InstanceRecord));
+        commands_ = align(capacities.draws * sizeof(shader::DrawRecord));
+        ids_ = commands_ + align(capacities.draws * sizeof(DrawCommand));
+        bytesPerView_ = ids_ + align(capacities.instances * sizeof(uint32_t));
+        bytesPerFrame_ = views_ + capacities.views * bytesPerView_;
         return buffer_.create(context, bytesPerFrame_ * frames_,
                               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
                                   VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT,
@@ -32,28 +37,31 @@ public:
 
     void begin(uint64_t frame) { begin_ = frame % frames_ * bytesPerFrame_; }
 
-    shader::ViewRecord* views() { return at<shader::ViewRecord>(0); }
+    shader::ViewRecord* passes() { return at<shader::ViewRecord>(0); }
     shader::InstanceRecord* instances() { return at<shader::InstanceRecord>(instances_); }
-    shader::DrawRecord* draws() { return at<shader::DrawRecord>(draws_); }
-    DrawCommand* commands() { return at<DrawCommand>(commands_); }
+    shader::DrawRecord* draws(uint32_t view) { return at<shader::DrawRecord>(ofView(view)); }
+    DrawCommand* commands(uint32_t view) { return at<DrawCommand>(ofView(view) + commands_); }
+    uint32_t* ids(uint32_t view) { return at<uint32_t>(ofView(view) + ids_); }
 
-    VkDeviceAddress viewAddress(uint32_t view) const {
-        return buffer_.address() + begin_ + view * sizeof(shader::ViewRecord);
-    }
-    VkDeviceAddress instancesAddress() const { return buffer_.address() + begin_ + instances_; }
-    VkDeviceAddress drawsAddress() const { return buffer_.address() + begin_ + draws_; }
+    VkDeviceAddress passAddress(uint32_t pass) const { return address(pass * sizeof(shader::ViewRecord)); }
+    VkDeviceAddress instancesAddress() const { return address(instances_); }
+    VkDeviceAddress drawsAddress(uint32_t view) const { return address(ofView(view)); }
+    VkDeviceAddress idsAddress(uint32_t view) const { return address(ofView(view) + ids_); }
     VkBuffer handle() const { return buffer_.handle(); }
-    VkDeviceSize commandsOffset() const { return begin_ + commands_; }
+    VkDeviceSize commandsOffset(uint32_t view) const { return begin_ + ofView(view) + commands_; }
 
 private:
+    VkDeviceSize ofView(uint32_t view) const { return views_ + view * bytesPerView_; }
+    VkDeviceAddress address(VkDeviceSize offset) const { return buffer_.address() + begin_ + offset; }
     template <typename T>
     T* at(VkDeviceSize offset) {
         return reinterpret_cast<T*>(buffer_.mapped().data() + begin_ + offset);
     }
 
     Buffer buffer_;
-    VkDeviceSize instances_ = 0, draws_ = 0, commands_ = 0; ///< offsets in a frame's part
-    VkDeviceSize bytesPerFrame_ = 0;
+    VkDeviceSize instances_ = 0, views_ = 0; ///< offsets in a frame's part
+    VkDeviceSize commands_ = 0, ids_ = 0;    ///< offsets in a view's part of it
+    VkDeviceSize bytesPerView_ = 0, bytesPerFrame_ = 0;
     VkDeviceSize begin_ = 0;
     uint32_t frames_ = 1;
 };

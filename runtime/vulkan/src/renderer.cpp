@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 // Memory of the backend, all taken by `create`:
 //
@@ -26,17 +27,48 @@ constexpr VkDeviceSize kMinStagingBytes = 64 * 1024;
 struct StoredInstance {
     uint32_t generation = 0; ///< odd while it is there
     uint32_t asset = 0;
+    bool visible = true; ///< the host's wish; it is while its asset is resident
 };
+
+/// A view with levels of its own.
+struct StoredView {
+    Selection selection;
+    DrawList draws;
+    bool used = false; ///< was asked for levels
+};
+
+SceneConfig sceneConfig(const RendererConfig& config) {
+    SceneConfig out;
+    out.assetCapacity = config.assetCapacity;
+    out.instanceCapacity = config.instanceCapacity;
+    out.assetPatchCapacity = config.assetPatchCapacity;
+    out.patchCapacity = config.patchCapacity;
+    out.steeredPartCapacity = config.steeredPartCapacity;
+    return out;
+}
 
 DrawListConfig drawListConfig(const RendererConfig& config) {
     DrawListConfig out;
-    out.instanceCapacity = config.instanceCapacity;
-    out.patchCapacity = config.patchCapacity;
+    out.scene = sceneConfig(config);
     out.materialCapacity = config.materialCapacity;
-    out.slotCapacity = config.slotCapacity;
     out.domainCapacity = config.domainCapacity;
-    out.indexCapacity = config.indexCapacity;
+    // Vertex streams may take half of the staging memory.
+    const VkDeviceSize atOnce = config.stagingBytes / 2 / (3 * sizeof(uint32_t));
+    out.wholeTriangles = uint32_t(std::min<VkDeviceSize>(out.wholeTriangles, atOnce));
+    return out;
+}
+
+IndexCacheConfig indexCacheConfig(const RendererConfig& config) {
+    IndexCacheConfig out;
+    out.arenaBytes = config.indexBytes;
+    out.rangeCapacity = std::max(out.rangeCapacity, 2 * config.patchCapacity);
+    out.keyBytes = std::max(out.keyBytes, 64 * out.rangeCapacity);
+    out.assetCapacity = config.assetCapacity;
+    out.slotCapacity = config.slotCapacity;
+    out.faceCapacity = config.faceCapacity;
+    out.patchCapacity = config.assetPatchCapacity;
     out.framesInFlight = config.framesInFlight;
+    out.narrowIndices = config.narrowIndices;
     return out;
 }
 
@@ -70,22 +102,26 @@ struct Renderer::Impl {
     StagingRing staging;
     FrameRecords records;
     Timeline timeline;
-    DrawList drawList;
+    Scene scene;
+    IndexCache indexCache;
+    std::vector<StoredView> views;
+    std::vector<uint32_t> storedAsset; ///< by id of the scene's asset: its index in the store
 
-    std::vector<StoredInstance> instances;               ///< by id of the draw list
+    std::vector<StoredInstance> instances;               ///< by id in the scene
     std::vector<shader::InstanceRecord> instanceRecords; ///< likewise
     uint32_t instanceEnd = 0;                            ///< ids from here on were never used
 
     uint64_t frame = 0;
     VkDeviceSize indexStagingOffset = 0;
-    uint32_t viewCount = 0;
-    std::vector<VkBufferCopy> indexCopies; ///< reserved for one a patch
+    uint32_t passCount = 0;
+    std::vector<VkBufferCopy> indexCopies; ///< reserved for all that a frame may have
     FrameStats stats;
 
     Status allocate();
     StoredInstance* find(InstanceHandle handle);
-    void writeDraws();
-    void recordBatches(VkCommandBuffer cmd, shader::PushConstants push, bool wire) const;
+    void showResident();
+    void writeDraws(uint32_t view);
+    void recordBatches(VkCommandBuffer cmd, uint32_t view, shader::PushConstants push, bool wire) const;
 };
 
 // Set-up ------------------------------------------------------------------------------------------------------------
@@ -96,10 +132,17 @@ Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 Status Renderer::Impl::allocate() {
-    Status status = drawList.create(drawListConfig(config));
+    const IndexCacheConfig cache = indexCacheConfig(config);
+    Status status = scene.create(sceneConfig(config));
+    if (status.ok()) status = indexCache.create(cache);
+    views.resize(config.viewCapacity);
+    for (StoredView& view : views) {
+        if (status.ok()) status = view.selection.create(sceneConfig(config));
+        if (status.ok()) status = view.draws.create(drawListConfig(config));
+    }
     if (status.ok()) status = assets.create(*context, config);
     if (status.ok()) {
-        status = indexArena.create(*context, VkDeviceSize(config.indexCapacity) * sizeof(uint32_t),
+        status = indexArena.create(*context, config.indexBytes,
                                    VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                                        VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
                                        VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT,
@@ -107,18 +150,21 @@ Status Renderer::Impl::allocate() {
     }
     if (status.ok()) status = staging.create(*context, config.stagingBytes, config.framesInFlight);
     if (status.ok()) {
-        status = records.create(
-            *context, {config.viewCapacity, config.instanceCapacity, config.patchCapacity, config.framesInFlight});
+        status = records.create(*context,
+                                {config.passCapacity, config.viewCapacity, config.instanceCapacity,
+                                 config.patchCapacity + DrawListConfig{}.wholeRangeCapacity, config.framesInFlight});
     }
     if (status.ok()) status = timeline.create(*context);
     instances.resize(config.instanceCapacity);
     instanceRecords.resize(config.instanceCapacity);
-    indexCopies.reserve(config.patchCapacity);
+    storedAsset.resize(config.assetCapacity);
+    indexCopies.reserve(cache.copyCapacity);
     return status;
 }
 
 Status Renderer::create(const Context& context, const RendererConfig& config) {
-    if (config.stagingBytes < kMinStagingBytes || config.assetCapacity == 0 || config.viewCapacity == 0) {
+    if (config.stagingBytes < kMinStagingBytes || config.assetCapacity == 0 || config.viewCapacity == 0 ||
+        config.passCapacity == 0) {
         return {StatusCode::badArgument,
                 "RendererConfig: stagingBytes must be 64 KiB or more, and no capacity may be zero", 0};
     }
@@ -136,16 +182,45 @@ Status Renderer::create(const Context& context, const RendererConfig& config) {
 
 // Assets and instances ----------------------------------------------------------------------------------------------
 
-Status Renderer::addAsset(const AssetView& asset, AssetHandle& handle) {
-    return impl_->assets.add(asset, handle);
+Status Renderer::addAsset(const AssetView& asset, AssetHandle& out) {
+    Impl& self = *impl_;
+    AssetHandle handle;
+    Status status = self.assets.add(asset, handle);
+    if (!status.ok()) return status;
+    StoredAsset& stored = self.assets.at(handle.index);
+    status = self.scene.addAsset({.asset = &stored.view, .firstMaterial = uint32_t(stored.materials.first)},
+                                 stored.sceneAsset);
+    if (status.ok()) {
+        status = self.indexCache.addAsset(stored.sceneAsset, stored.view);
+        if (!status.ok()) self.scene.removeAsset(stored.sceneAsset);
+    }
+    if (!status.ok()) {
+        const Status removed = self.assets.remove(handle, self.frame);
+        assert(removed.ok());
+        (void)removed;
+        return status;
+    }
+    self.storedAsset[stored.sceneAsset] = handle.index;
+    out = handle;
+    return {};
 }
 
 bool Renderer::resident(AssetHandle asset) const {
     return impl_->assets.find(asset) && impl_->assets.uploads().done(asset.index);
 }
 
-Status Renderer::removeAsset(AssetHandle asset) {
-    return impl_->assets.remove(asset, impl_->frame);
+Status Renderer::removeAsset(AssetHandle handle) {
+    Impl& self = *impl_;
+    const StoredAsset* asset = self.assets.find(handle);
+    const uint32_t sceneAsset = asset ? asset->sceneAsset : 0;
+    const Status status = self.assets.remove(handle, self.frame);
+    if (!status.ok()) return status;
+    for (StoredView& view : self.views) {
+        if (view.used) view.draws.forgetAsset(sceneAsset, self.indexCache);
+    }
+    self.indexCache.removeAsset(sceneAsset);
+    self.scene.removeAsset(sceneAsset);
+    return {};
 }
 
 StoredInstance* Renderer::Impl::find(InstanceHandle handle) {
@@ -158,11 +233,8 @@ Status Renderer::addInstance(AssetHandle handle, const Placement& placement, Ins
     Impl& self = *impl_;
     StoredAsset* asset = self.assets.find(handle);
     if (!asset) return {StatusCode::badArgument, "addInstance: no such asset", handle.index};
-    InstanceDesc desc;
-    desc.asset = &asset->view;
-    desc.firstMaterial = uint32_t(asset->materials.first);
     uint32_t id = 0;
-    const Status status = self.drawList.addInstance(desc, id);
+    const Status status = self.scene.addInstance(asset->sceneAsset, placement, id);
     if (!status.ok()) return status;
     ++asset->instanceCount;
     StoredInstance& instance = self.instances[id];
@@ -182,13 +254,36 @@ Status Renderer::addInstance(AssetHandle handle, const Placement& placement, Ins
 Status Renderer::setPlacement(InstanceHandle handle, const Placement& placement) {
     if (!impl_->find(handle)) return {StatusCode::badArgument, "setPlacement: no such instance", handle.index};
     setRows(impl_->instanceRecords[handle.index], placement);
+    impl_->scene.setPlacement(handle.index, placement);
+    return {};
+}
+
+Status Renderer::setVisible(InstanceHandle handle, bool visible) {
+    StoredInstance* instance = impl_->find(handle);
+    if (!instance) return {StatusCode::badArgument, "setVisible: no such instance", handle.index};
+    instance->visible = visible;
+    return {};
+}
+
+Status Renderer::setPart(InstanceHandle handle, uint32_t part, const PartControl& control) {
+    const StoredInstance* instance = impl_->find(handle);
+    if (!instance) return {StatusCode::badArgument, "setPart: no such instance", handle.index};
+    if (part >= impl_->assets.at(instance->asset).view.parts.size()) {
+        return {StatusCode::badArgument, "setPart: the asset has no such part", part};
+    }
+    return impl_->scene.setPart(handle.index, part, control);
+}
+
+Status Renderer::clearParts(InstanceHandle handle) {
+    if (!impl_->find(handle)) return {StatusCode::badArgument, "clearParts: no such instance", handle.index};
+    impl_->scene.clearParts(handle.index);
     return {};
 }
 
 Status Renderer::removeInstance(InstanceHandle handle) {
     StoredInstance* instance = impl_->find(handle);
     if (!instance) return {StatusCode::badArgument, "removeInstance: no such instance", handle.index};
-    impl_->drawList.removeInstance(handle.index);
+    impl_->scene.removeInstance(handle.index);
     --impl_->assets.at(instance->asset).instanceCount;
     ++instance->generation;
     return {};
@@ -210,9 +305,25 @@ Status Renderer::beginFrame() {
     // Streams take at most half, so that levels can change while assets arrive.
     self.assets.uploads().fill(self.staging, self.staging.bytesPerFrame() / 2);
     const std::span<std::byte> rest = self.staging.take(self.staging.freeBytes(), self.indexStagingOffset);
-    self.drawList.beginFrame({reinterpret_cast<uint32_t*>(rest.data()), rest.size() / sizeof(uint32_t)});
-    self.viewCount = 0;
+    self.indexCache.beginFrame(rest);
+    self.passCount = 0;
+    self.showResident();
     return {};
+}
+
+/// Instances whose assets are on their way are in no view.
+void Renderer::Impl::showResident() {
+    for (uint32_t id = 0; id < instanceEnd; ++id) {
+        const StoredInstance& instance = instances[id];
+        if (instance.generation % 2 == 1)
+            scene.setVisible(id, instance.visible && assets.uploads().done(instance.asset));
+    }
+}
+
+void Renderer::select(uint32_t view, const SelectionDesc& desc) {
+    assert(view < impl_->views.size() && "raise RendererConfig::viewCapacity");
+    impl_->views[view].selection.update(impl_->scene, desc);
+    impl_->views[view].used = true;
 }
 
 Status Renderer::setLevels(InstanceHandle handle, Levels levels) {
@@ -223,44 +334,58 @@ Status Renderer::setLevels(InstanceHandle handle, Levels levels) {
                 "the asset is still on its way: ask again next frame, or raise RendererConfig::stagingBytes",
                 instance->asset};
     }
-    return impl_->drawList.setLevels(handle.index, levels);
+    impl_->views[0].selection.set(impl_->scene, handle.index, levels);
+    impl_->views[0].used = true;
+    return {};
 }
 
-Levels Renderer::levels(InstanceHandle handle) const {
-    return impl_->find(handle) ? impl_->drawList.levels(handle.index) : Levels{};
-}
-
-void Renderer::Impl::writeDraws() {
-    const std::span<const DrawCommand> commands = drawList.draws();
-    const std::span<const DrawPatch> patches = drawList.drawPatches();
-    std::copy(commands.begin(), commands.end(), records.commands());
-    shader::DrawRecord* out = records.draws();
-    for (size_t i = 0; i < patches.size(); ++i) {
-        const StoredAsset& asset = assets.at(instances[patches[i].instance].asset);
-        const format::PatchRecord& patch = asset.view.patches[patches[i].patch];
-        const uint32_t level = drawList.levels(patches[i].instance)[patches[i].patch];
-        shader::DrawRecord record{};
-        record.instance = patches[i].instance;
-        record.material = uint32_t(asset.materials.first) + patch.material;
-        record.partColor = asset.partColors[patch.part];
-        record.levelFraction = asset.view.levelCount() > 1 ? float(level) / float(asset.view.levelCount() - 1) : 0;
-        out[i] = record;
+void Renderer::Impl::writeDraws(uint32_t view) {
+    const DrawList& list = views[view].draws;
+    std::copy(list.draws().begin(), list.draws().end(), records.commands(view));
+    std::copy(list.drawInstances().begin(), list.drawInstances().end(), records.ids(view));
+    shader::DrawRecord* out = records.draws(view);
+    for (const DrawBatch& batch : list.batches()) {
+        for (uint32_t i = batch.firstDraw; i < batch.firstDraw + batch.drawCount; ++i) {
+            const DrawSource& source = list.sources()[i];
+            const StoredAsset& asset = assets.at(storedAsset[source.asset]);
+            const bool whole = source.patch == format::kNone;
+            shader::DrawRecord record{};
+            record.firstInstance = list.draws()[i].firstInstance;
+            record.material = batch.material;
+            record.partColor =
+                whole ? shader::kPartColorCount : asset.partColors[asset.view.patches[source.patch].part];
+            const uint32_t coarsest = std::max(asset.view.levelCount(), 2u) - 1;
+            record.levelFraction = float(source.level) / float(coarsest);
+            record.vertexOffset = uint32_t(list.draws()[i].vertexOffset);
+            record.indexBytes = batch.indexBytes;
+            out[i] = record;
+        }
     }
-    std::copy_n(instanceRecords.begin(), instanceEnd, records.instances());
 }
 
 void Renderer::endFrame() {
     Impl& self = *impl_;
-    self.drawList.endFrame();
-    self.writeDraws();
-    self.indexCopies.clear();
-    for (const CopyRange& range : self.drawList.copies()) {
-        constexpr VkDeviceSize size = sizeof(uint32_t);
-        self.indexCopies.push_back(
-            {self.indexStagingOffset + range.staging * size, range.arena * size, range.count * size});
+    self.stats = {};
+    for (uint32_t view = 0; view < self.views.size(); ++view) {
+        StoredView& stored = self.views[view];
+        if (!stored.used) continue;
+        stored.draws.update(self.scene, stored.selection, self.indexCache);
+        self.writeDraws(view);
+        const DrawStats& drawn = stored.draws.stats();
+        self.stats.triangles += drawn.triangles;
+        self.stats.draws += uint32_t(stored.draws.draws().size());
+        self.stats.patchesChanged += drawn.changedPatches;
+        self.stats.deferredInstances += drawn.deferredInstances;
     }
-    self.stats = self.drawList.stats();
-    self.stats.uploadBytes += uint32_t(self.assets.uploads().bytes());
+    self.indexCache.endFrame();
+    std::copy_n(self.instanceRecords.begin(), self.instanceEnd, self.records.instances());
+    self.indexCopies.clear();
+    for (const CopyRange& range : self.indexCache.copies()) {
+        self.indexCopies.push_back({self.indexStagingOffset + range.staging, range.arena, range.bytes});
+    }
+    const IndexCacheStats cache = self.indexCache.stats();
+    self.stats.patchesRebuilt = cache.misses;
+    self.stats.uploadBytes = cache.uploadBytes + uint32_t(self.assets.uploads().bytes());
 }
 
 // Recording ---------------------------------------------------------------------------------------------------------
@@ -290,42 +415,50 @@ void Renderer::recordBackground(VkCommandBuffer cmd) const {
     vk.vkCmdDraw(cmd, 3, 1, 0, 0);
 }
 
-void Renderer::Impl::recordBatches(VkCommandBuffer cmd, shader::PushConstants push, bool wire) const {
+void Renderer::Impl::recordBatches(VkCommandBuffer cmd, uint32_t view, shader::PushConstants push, bool wire) const {
     const Functions& vk = context->vk();
     // Wire draws read the same commands as VkDrawIndirectCommand, which is a DrawCommand's first four words: its
-    // vertexOffset, always 0 here, is taken for firstInstance, and the instance is found by the draw's record.
+    // vertexOffset is taken for firstInstance, and the instances and rows are found by the draw's record.
     const auto draw = wire ? vk.vkCmdDrawIndirect : vk.vkCmdDrawIndexedIndirect;
-    for (const DrawBatch& batch : drawList.batches()) {
+    uint32_t bound = 0;
+    for (const DrawBatch& batch : views[view].draws.batches()) {
+        if (!wire && std::exchange(bound, batch.indexBytes) != batch.indexBytes) {
+            const VkIndexType type = batch.indexBytes == 2 ? VK_INDEX_TYPE_UINT16 : VK_INDEX_TYPE_UINT32;
+            vk.vkCmdBindIndexBuffer(cmd, indexArena.handle(), 0, type);
+        }
         for (uint32_t done = 0; done < batch.drawCount;) {
             const uint32_t count = std::min(batch.drawCount - done, context->maxDrawIndirectCount());
             push.firstDraw = batch.firstDraw + done;
             vk.vkCmdPushConstants(cmd, pipelines.layout(), VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                                   sizeof(push), &push);
-            draw(cmd, records.handle(), records.commandsOffset() + push.firstDraw * sizeof(DrawCommand), count,
+            draw(cmd, records.handle(), records.commandsOffset(view) + push.firstDraw * sizeof(DrawCommand), count,
                  sizeof(DrawCommand));
             done += count;
         }
     }
 }
 
-Status Renderer::recordDraws(VkCommandBuffer cmd, const ViewDesc& view) {
+Status Renderer::recordDraws(VkCommandBuffer cmd, const ViewDesc& desc) {
     Impl& self = *impl_;
-    if (self.viewCount == self.config.viewCapacity) {
-        return {StatusCode::outOfCapacity, "too many views a frame: raise RendererConfig::viewCapacity",
-                self.viewCount + 1ull};
+    if (self.passCount == self.config.passCapacity) {
+        return {StatusCode::outOfCapacity, "too many passes a frame: raise RendererConfig::passCapacity",
+                self.passCount + 1ull};
+    }
+    if (desc.view >= self.views.size()) {
+        return {StatusCode::outOfCapacity, "no such view: raise RendererConfig::viewCapacity", desc.view + 1ull};
     }
     const Functions& vk = self.context->vk();
-    self.records.views()[self.viewCount] = viewRecord(view);
+    self.records.passes()[self.passCount] = viewRecord(desc);
     shader::PushConstants push{};
-    push.view = self.records.viewAddress(self.viewCount++);
+    push.view = self.records.passAddress(self.passCount++);
     push.instances = self.records.instancesAddress();
-    push.draws = self.records.drawsAddress();
+    push.draws = self.records.drawsAddress(desc.view);
     push.materials = self.assets.materials().address();
     push.indices = self.indexArena.address();
-    const bool wire = view.mode == ShadingMode::wire;
+    push.instanceIds = self.records.idsAddress(desc.view);
+    const bool wire = desc.mode == ShadingMode::wire;
     vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, wire ? self.pipelines.wire() : self.pipelines.surface());
-    vk.vkCmdBindIndexBuffer(cmd, self.indexArena.handle(), 0, VK_INDEX_TYPE_UINT32);
-    self.recordBatches(cmd, push, wire);
+    self.recordBatches(cmd, desc.view, push, wire);
     return {};
 }
 
@@ -333,17 +466,19 @@ VkSemaphoreSubmitInfo Renderer::frameDone() const {
     return impl_->timeline.signal(impl_->frame);
 }
 
-FrameGeometry Renderer::geometry() const {
+FrameGeometry Renderer::geometry(uint32_t view) const {
     const Impl& self = *impl_;
+    assert(view < self.views.size());
     FrameGeometry out;
     out.indices = self.indexArena.handle();
     out.indicesAddress = self.indexArena.address();
     out.commands = self.records.handle();
-    out.commandsOffset = self.records.commandsOffset();
+    out.commandsOffset = self.records.commandsOffset(view);
     out.instances = self.records.instancesAddress();
-    out.draws = self.records.drawsAddress();
+    out.instanceIds = self.records.idsAddress(view);
+    out.draws = self.records.drawsAddress(view);
     out.materials = self.assets.materials().address();
-    out.batches = self.drawList.batches();
+    out.batches = self.views[view].draws.batches();
     return out;
 }
 
@@ -351,8 +486,20 @@ const FrameStats& Renderer::stats() const {
     return impl_->stats;
 }
 
-const DrawList& Renderer::drawList() const {
-    return impl_->drawList;
+const Scene& Renderer::scene() const {
+    return impl_->scene;
+}
+
+const Selection& Renderer::selection(uint32_t view) const {
+    return impl_->views[view].selection;
+}
+
+const DrawList& Renderer::drawList(uint32_t view) const {
+    return impl_->views[view].draws;
+}
+
+const IndexCache& Renderer::indexCache() const {
+    return impl_->indexCache;
 }
 
 std::optional<ShadingMode> modeNamed(std::string_view name) {
@@ -373,6 +520,7 @@ RendererConfig configFor(std::span<const AssetView* const> assets, uint32_t inst
         materials += asset->materials.size();
         faces += asset->record->faceCount;
         largestFaces = std::max<uint64_t>(largestFaces, asset->record->faceCount);
+        config.faceCapacity = std::max(config.faceCapacity, asset->record->maxPatchFaces);
         for (uint32_t i = 0; i < asset->vertexStreamCount; ++i) {
             streamBytes += asset->vertexStreams[i].bytes.size() + AssetStore::kAlignment;
         }
@@ -384,11 +532,11 @@ RendererConfig configFor(std::span<const AssetView* const> assets, uint32_t inst
     };
     grow(config.assetCapacity, assets.size());
     grow(config.instanceCapacity, uint64_t(instances) * assets.size());
+    grow(config.assetPatchCapacity, patches);
     grow(config.patchCapacity, patches * instances);
     grow(config.materialCapacity, materials);
-    // Old ranges live on while frames that read them are in flight, so a whole change takes this many times the
-    // indices.
-    grow(config.indexCapacity, 3 * faces * instances * (1 + config.framesInFlight));
+    // Twice what is held: of mixed instances all, and what frames in flight still read of a whole change.
+    grow(config.indexBytes, 2 * 3 * sizeof(uint32_t) * faces * instances * (1 + config.framesInFlight));
     config.vertexArenaBytes = std::max<VkDeviceSize>(config.vertexArenaBytes, streamBytes);
     // Half of it takes the whole of the largest asset at level 0 at once.
     config.stagingBytes = std::max<VkDeviceSize>(config.stagingBytes, 2 * 3 * sizeof(uint32_t) * largestFaces + 4096);

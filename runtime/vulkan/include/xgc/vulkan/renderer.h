@@ -1,7 +1,6 @@
 #pragma once
 
 #include <xgc/draw_list.h>
-#include <xgc/select.h>
 #include <xgc/vulkan/camera.h>
 #include <xgc/vulkan/context.h>
 
@@ -18,7 +17,7 @@ struct AssetHandle {
 };
 
 struct InstanceHandle {
-    uint32_t index = 0; ///< DrawPatch::instance
+    uint32_t index = 0; ///< id in the renderer's scene: drawInstances() names it
     uint32_t generation = 0;
 };
 
@@ -26,12 +25,17 @@ struct InstanceHandle {
 struct RendererConfig {
     uint32_t assetCapacity = 64;
     uint32_t instanceCapacity = 256;
+    uint32_t assetPatchCapacity = 16384;          ///< sum of the patches of all assets
     uint32_t patchCapacity = 16384;               ///< sum of the patches of all instances
+    uint32_t steeredPartCapacity = 4096;          ///< sum of the parts of all instances with a PartControl
     uint32_t materialCapacity = 256;              ///< sum of the materials of all assets
     uint32_t slotCapacity = 65536;                ///< largest xgc::scratchCapacity of the assets
     uint32_t domainCapacity = 65536;              ///< largest domain count of the assets
-    uint32_t viewCapacity = 4;                    ///< calls of recordDraws a frame
-    uint32_t indexCapacity = 1u << 24;            ///< of the index arena, in indices
+    uint32_t faceCapacity = 131072;               ///< largest AssetRecord::maxPatchFaces of the assets
+    uint32_t viewCapacity = 1;                    ///< views with levels of their own: the camera's, shadows', ...
+    uint32_t passCapacity = 4;                    ///< calls of recordDraws a frame
+    uint32_t indexBytes = 64u << 20;              ///< of the index arena: twice what is drawn and more
+    bool narrowIndices = true;                    ///< 16 bits where a patch allows
     VkDeviceSize vertexArenaBytes = 256ull << 20; ///< vertex streams of all assets
     VkDeviceSize stagingBytes = 32ull << 20;      ///< a frame in flight: new indices and streams; at least 64 KiB
     uint32_t framesInFlight = 2;
@@ -53,29 +57,41 @@ enum class ShadingMode : uint32_t { shaded, parts, levels, wire };
 std::optional<ShadingMode> modeNamed(std::string_view name);
 
 struct ViewDesc {
+    uint32_t view = 0; ///< whose levels and draws
     Camera camera;
     glm::vec3 sky{0, 1, 0}; ///< unit, up in the world: where the ambient light comes from
     ShadingMode mode = ShadingMode::shaded;
     float linePixels = 1.1f; ///< of the target: width of the edges in mode wire
 };
 
+/// Sums over all views, but for what the views share.
+struct FrameStats {
+    uint64_t triangles = 0;
+    uint32_t draws = 0;
+    uint32_t patchesChanged = 0;    ///< got another level
+    uint32_t patchesRebuilt = 0;    ///< index lists that were built, patches' or whole assets'
+    uint32_t uploadBytes = 0;       ///< indices and vertex streams
+    uint32_t deferredInstances = 0; ///< are not drawn at the levels that were selected: staging or arena was full
+};
+
 /// What a host's own passes need, with shaders and pipelines of their own (shared.h has the records): valid from
 /// endFrame to the next beginFrame.
 struct FrameGeometry {
-    VkBuffer indices = VK_NULL_HANDLE; ///< u32, vertex rows of the asset
+    VkBuffer indices = VK_NULL_HANDLE; ///< u16 or u32 as DrawBatch::indexBytes says
     VkDeviceAddress indicesAddress = 0;
     VkBuffer commands = VK_NULL_HANDLE; ///< a DrawCommand each draw
     VkDeviceSize commandsOffset = 0;
-    VkDeviceAddress instances = 0; ///< InstanceRecord, by DrawPatch::instance
-    VkDeviceAddress draws = 0;     ///< DrawRecord, by number of the draw
-    VkDeviceAddress materials = 0; ///< MaterialRecord
+    VkDeviceAddress instances = 0;   ///< InstanceRecord, by id
+    VkDeviceAddress instanceIds = 0; ///< ids, by firstInstance of a draw and up
+    VkDeviceAddress draws = 0;       ///< DrawRecord, by number of the draw
+    VkDeviceAddress materials = 0;   ///< MaterialRecord
     std::span<const DrawBatch> batches;
 };
 
 /// Draws instances of assets at any mix of levels with the host's device, queue and attachments. A frame:
 ///
 ///     renderer.beginFrame();                        // waits for the frame framesInFlight ago, for nothing else
-///     for each instance: select(...), renderer.setLevels(instance, levels);
+///     for each view: renderer.select(view, desc);   // or setLevels, instance by instance
 ///     renderer.endFrame();
 ///     renderer.recordTransfers(cmd);                // outside rendering, before any draw
 ///     vkCmdBeginRendering(cmd, ...), viewport, scissor
@@ -102,30 +118,38 @@ public:
     /// Its instances must be gone. Its memory is reused when no frame in flight reads it.
     Status removeAsset(AssetHandle asset);
 
-    /// Drawn from the first frame in which setLevels succeeds for it.
+    /// Drawn once its asset is resident and a view selects it.
     Status addInstance(AssetHandle asset, const Placement& placement, InstanceHandle& handle);
     Status setPlacement(InstanceHandle instance, const Placement& placement);
+    Status setVisible(InstanceHandle instance, bool visible);
+    /// As Scene::setPart.
+    Status setPart(InstanceHandle instance, uint32_t part, const PartControl& control);
+    Status clearParts(InstanceHandle instance);
     Status removeInstance(InstanceHandle instance);
 
     Status beginFrame();
-    /// As DrawList::setLevels; also deferred, with outOfCapacity, while the asset is not resident.
+    /// Chooses the levels of all instances for a view; it keeps them until it is asked again.
+    void select(uint32_t view, const SelectionDesc& desc);
+    /// The host's own choice for one instance, in view 0. outOfCapacity while its asset is not resident.
     Status setLevels(InstanceHandle instance, Levels levels);
-    /// Levels that the instance is drawn at; empty before its first success.
-    Levels levels(InstanceHandle instance) const;
+    /// Brings the draws of all views up to their levels, as far as staging and arena allow.
     void endFrame();
 
     void recordTransfers(VkCommandBuffer cmd) const;
     /// A light grey gradient over the whole target; no depth. Optional.
     void recordBackground(VkCommandBuffer cmd) const;
-    /// One vkCmdDrawIndexedIndirect a material. Viewport and scissor are the host's.
+    /// One vkCmdDrawIndexedIndirect a material and size of index. Viewport and scissor are the host's.
     Status recordDraws(VkCommandBuffer cmd, const ViewDesc& view);
     /// To be signalled by the host's submission of the frame.
     VkSemaphoreSubmitInfo frameDone() const;
 
-    FrameGeometry geometry() const;
-    /// Of the latest endFrame; uploadBytes counts indices and vertex streams.
+    FrameGeometry geometry(uint32_t view = 0) const;
+    /// Of the latest endFrame.
     const FrameStats& stats() const;
-    const DrawList& drawList() const;
+    const Scene& scene() const;
+    const Selection& selection(uint32_t view = 0) const;
+    const DrawList& drawList(uint32_t view = 0) const;
+    const IndexCache& indexCache() const;
 
 private:
     struct Impl;

@@ -2,7 +2,6 @@
 
 #include <xgc/asset.h>
 #include <xgc/bake/asset_writer.h>
-#include <xgc/select.h>
 #include <xgc/vulkan/renderer.h>
 
 #include <memory>
@@ -21,11 +20,10 @@ struct SceneInstance {
     const AssetView* asset = nullptr;
     Placement placement;
     vulkan::InstanceHandle handle;
-    std::vector<uint8_t> levels; ///< wanted in the current frame
 };
 
 /// Baked assets, each standing several times on a grid in the plane y = 0.
-class Scene {
+class AssetGrid {
 public:
     bake::Status load(const std::vector<std::filesystem::path>& files, uint32_t instancesOfEach);
 

@@ -1,4 +1,4 @@
-#include "scene.h"
+#include "asset_grid.h"
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
@@ -27,7 +27,7 @@ glm::mat4 normalized(const AssetView& asset) {
 
 } // namespace
 
-bake::Status Scene::load(const std::vector<std::filesystem::path>& files, uint32_t instancesOfEach) {
+bake::Status AssetGrid::load(const std::vector<std::filesystem::path>& files, uint32_t instancesOfEach) {
     constexpr float kSpacing = 1.9f;
     instancesOfEach_ = instancesOfEach;
     const uint32_t count = uint32_t(files.size()) * instancesOfEach;
@@ -44,20 +44,19 @@ bake::Status Scene::load(const std::vector<std::filesystem::path>& files, uint32
         const glm::vec3 place(kSpacing * (float(i % columns) - 0.5f * float(columns - 1)), 0,
                               kSpacing * (float(i / columns) - 0.5f * float(rows - 1)));
         instance.placement = makePlacement(glm::translate(glm::mat4(1), place) * normalized(*instance.asset));
-        instance.levels.resize(instance.asset->patchCount());
         instances_.push_back(std::move(instance));
     }
     radius_ = 1 + 0.5f * kSpacing * std::hypot(float(columns - 1), float(rows - 1));
     return {};
 }
 
-vulkan::RendererConfig Scene::rendererConfig() const {
+vulkan::RendererConfig AssetGrid::rendererConfig() const {
     std::vector<const AssetView*> views;
     for (const auto& asset : assets_) views.push_back(&asset->view);
     return vulkan::configFor(views, instancesOfEach_);
 }
 
-Status Scene::addTo(vulkan::Renderer& renderer) {
+Status AssetGrid::addTo(vulkan::Renderer& renderer) {
     std::vector<vulkan::AssetHandle> handles(assets_.size());
     for (size_t i = 0; i < assets_.size(); ++i) {
         const Status status = renderer.addAsset(assets_[i]->view, handles[i]);
