@@ -472,7 +472,7 @@ uint64_t IndexCache::bytesNeeded(uint32_t asset, uint32_t patch, Levels levels) 
     const size_t bytes = writePatchKey(asset, view, patch, levels, c.key.data());
     const std::span<const std::byte> name(c.key.data(), bytes);
     if (c.keys.find(name, KeyTable::hash(name)) != KeyTable::kNone) return 0;
-    return Source{view, asset, patch, patch + 1, kNone, levels}.byteCapacity();
+    return Source{view, asset, patch, patch + 1, kNone, levels}.bytesAtMost();
 }
 
 uint64_t IndexCache::freeStagingBytes() const {

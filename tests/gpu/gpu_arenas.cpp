@@ -140,6 +140,7 @@ TEST_CASE("index ranges past 128 MiB are drawn alike") {
     config.slotCapacity = 300'000;
     config.indexBytes = 240u << 20;
     config.vertexArenaBytes = 480 * kMiB;
+    config.stagingBytes = 96 * kMiB;
     config.narrowIndices = false;
     Stage large(gpu, config, singleSampled(96, 96));
     const vulkan::InstanceHandle instance = large.place(asset.view, {}, view);
