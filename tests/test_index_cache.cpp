@@ -865,7 +865,7 @@ TEST_CASE("an arena of twice the bytes that are held refuses nothing") {
     const auto bytesOf = [](const Triangles& t) { return uint32_t((6 * t.size() + 3) / 4 * 4); };
     for (const uint32_t seed : {1u, 2u, 3u, 4u}) {
         Random random(seed);
-        const uint32_t arenaBytes = 200000;
+        const uint32_t arenaBytes = 100000; // eight times the longest
         OneAsset one(asset, {.arenaBytes = arenaBytes, .framesInFlight = 1 + seed % 3}, 1u << 20);
         std::map<uint32_t, uint32_t> held; // range, bytes
         uint32_t heldBytes = 0, evictions = 0, mostHeld = 0;

@@ -61,8 +61,8 @@ struct IndexCacheStats {
 /// needed, the least recently used first, and never while a frame in flight may read them: one that was held at any
 /// time in a frame counts as read by it. So copies need no wait, only a barrier between them and the draws.
 ///
-/// Sizes: give the arena twice the bytes that are held and that framesInFlight frames let go of, since ranges do not
-/// move. Staging holds what a frame adds.
+/// Sizes: give the arena twice the bytes that are held and that framesInFlight frames let go of, and eight times the
+/// longest range, since ranges do not move (tested, not proved). Staging holds what a frame adds.
 ///
 /// All memory is allocated by `create`. One thread at a time. An id, range, patch, material or level of nothing is a
 /// programming error (asserted).
