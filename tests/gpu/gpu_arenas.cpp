@@ -133,20 +133,20 @@ TEST_CASE("index ranges past 128 MiB are drawn alike") {
     Stage small(gpu, {}, singleSampled(96, 96));
     const Picture expected = small.draw(small.place(asset.view, {}, view), finest(asset.view), view);
 
-    // Twelve assets of a million triangles are built before the asset's indices, and never drawn.
+    // Eight assets of a million triangles are built before the asset's indices, and never drawn.
     const std::vector<glm::uvec3> many(1'000'000, glm::uvec3(0, 1, 2));
     const HandAsset filler(cube.positions, many, 100'000);
     vulkan::RendererConfig config;
     config.slotCapacity = 300'000;
     config.indexBytes = 240u << 20;
-    config.vertexArenaBytes = 480 * kMiB;
+    config.vertexArenaBytes = 320 * kMiB;
     config.stagingBytes = 96 * kMiB;
     config.narrowIndices = false;
     Stage large(gpu, config, singleSampled(96, 96));
     const vulkan::InstanceHandle instance = large.place(asset.view, {}, view);
-    std::vector<vulkan::InstanceHandle> fillers(12);
-    for (vulkan::InstanceHandle& one : fillers) {
-        one = large.place(filler.view, {}, view);
+    std::vector<vulkan::InstanceHandle> fillers(8);
+    for (vulkan::InstanceHandle& one : fillers) one = large.place(filler.view, {}, view);
+    for (const vulkan::InstanceHandle& one : fillers) {
         sendFrame(large, one, finest(filler.view));
         REQUIRE(large.renderer.stats().deferredInstances == 0);
     }
