@@ -39,18 +39,31 @@ HalfEdgeBuckets bucketHalfEdges(const Mesh& mesh) {
     return buckets;
 }
 
+/// Buckets are of three keys in the mean: too few for std::sort to pay.
+void sortKeys(std::span<uint64_t> keys) {
+    constexpr size_t kFew = 16;
+    if (keys.size() > kFew) return std::sort(keys.begin(), keys.end());
+    for (size_t i = 1; i < keys.size(); ++i) {
+        const uint64_t key = keys[i];
+        size_t at = i;
+        for (; at > 0 && keys[at - 1] > key; --at) keys[at] = keys[at - 1];
+        keys[at] = key;
+    }
+}
+
 void buildEdges(const Mesh& mesh, Topology& topology) {
     HalfEdgeBuckets buckets = bucketHalfEdges(mesh);
     topology.faceEdges.resize(mesh.faces.size());
     topology.edges.reserve(buckets.keys.size() / 2);
     topology.edgeFaces.reserve(buckets.keys.size());
+    topology.edgeFaceOffsets.reserve(buckets.keys.size() / 2 + 1);
     for (uint32_t low = 0; low + 1 < buckets.offsets.size(); ++low) {
-        const auto first = buckets.keys.begin() + buckets.offsets[low];
-        const auto last = buckets.keys.begin() + buckets.offsets[low + 1];
-        std::sort(first, last);
-        for (auto it = first; it != last; ++it) {
-            const auto high = uint32_t(*it >> 32), half = uint32_t(*it);
-            if (it == first || uint32_t(*(it - 1) >> 32) != high) {
+        const std::span keys =
+            std::span(buckets.keys).subspan(buckets.offsets[low], buckets.offsets[low + 1] - buckets.offsets[low]);
+        sortKeys(keys);
+        for (size_t i = 0; i < keys.size(); ++i) {
+            const auto high = uint32_t(keys[i] >> 32), half = uint32_t(keys[i]);
+            if (i == 0 || uint32_t(keys[i - 1] >> 32) != high) {
                 topology.edgeFaceOffsets.push_back(uint32_t(topology.edgeFaces.size()));
                 topology.edges.emplace_back(low, high);
             }

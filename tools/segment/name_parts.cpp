@@ -11,13 +11,16 @@ namespace {
 /// A label holds a part where it has this share of its area.
 constexpr double kHeld = 0.9;
 
+bool areAllAlike(std::span<const uint32_t> labels) {
+    return std::adjacent_find(labels.begin(), labels.end(), std::not_equal_to<>()) == labels.end();
+}
+
 /// Per part: the label that holds it and no other part, or kNone. Nothing where all faces have the same.
 std::vector<uint32_t> holders(const Segmentation& parts, std::span<const uint32_t> faceLabels,
                               std::span<const double> faceAreas) {
     const size_t count = parts.partCount();
     std::vector<uint32_t> holder(count, kNone);
-    if (std::adjacent_find(faceLabels.begin(), faceLabels.end(), std::not_equal_to<>()) == faceLabels.end())
-        return holder;
+    if (areAllAlike(faceLabels)) return holder;
     // A label of more than half of the area is left over when unequal labels cancel out (Boyer and Moore 1991).
     std::vector<double> left(count, 0.0), area(count, 0.0), held(count, 0.0);
     for (size_t f = 0; f < faceLabels.size(); ++f) {
@@ -48,6 +51,7 @@ std::vector<uint32_t> holders(const Segmentation& parts, std::span<const uint32_
 } // namespace
 
 void nameParts(const Mesh& mesh, Segmentation& parts) {
+    if (areAllAlike(mesh.faceNode) && areAllAlike(mesh.faceMaterial)) return; // nothing to name them by
     const std::vector<double> areas = faceAreas(mesh);
     const std::vector<uint32_t> nodes = holders(parts, mesh.faceNode, areas);
     const std::vector<uint32_t> materials = holders(parts, mesh.faceMaterial, areas);

@@ -19,9 +19,13 @@ DenseLabels makeDense(std::span<const uint32_t> faceLabels) {
     DenseLabels dense;
     dense.ofFace.reserve(faceLabels.size());
     std::unordered_map<uint32_t, uint32_t> numbers; // looked up, never iterated
-    for (const uint32_t label : faceLabels) {
-        const auto [at, isNew] = numbers.try_emplace(label, uint32_t(dense.label.size()));
-        if (isNew) dense.label.push_back(label);
+    for (size_t f = 0; f < faceLabels.size(); ++f) {
+        if (f > 0 && faceLabels[f] == faceLabels[f - 1]) { // most are
+            dense.ofFace.push_back(dense.ofFace.back());
+            continue;
+        }
+        const auto [at, isNew] = numbers.try_emplace(faceLabels[f], uint32_t(dense.label.size()));
+        if (isNew) dense.label.push_back(faceLabels[f]);
         dense.ofFace.push_back(at->second);
     }
     return dense;

@@ -30,8 +30,14 @@ std::vector<TriangleShape> shapesOf(const Piece& piece) {
     return shapes;
 }
 
+/// Rounds down without a call, which std::floor is where the processor need not have SSE 4.1.
+int floorOf(float x) {
+    const int i = int(x);
+    return i - int(float(i) > x);
+}
+
 glm::ivec3 cubeOf(const glm::vec3& p, float inverseSpacing) {
-    return glm::ivec3(glm::floor(p * inverseSpacing));
+    return {floorOf(p.x * inverseSpacing), floorOf(p.y * inverseSpacing), floorOf(p.z * inverseSpacing)};
 }
 
 float edgeLength(const Piece& piece, uint32_t t, int k) {
