@@ -76,11 +76,12 @@ private:
     uint32_t cellOf(uint32_t triangle) const { return component_.cells.ofTriangle[triangle]; }
     bool isMixed(uint32_t cell) const { return aroundOffsets_[cell] != aroundOffsets_[cell + 1]; }
 
-    /// Triangles of mixed cells; `scratch_` says from now on which triangle a face is.
+    /// Triangles of mixed cells; `scratch_` says from now on which node a face is.
     void collectBand() {
         for (uint32_t t = 0; t < component_.face.size(); ++t) {
-            scratch_[faceOf(t)] = t;
-            if (isMixed(cellOf(t))) band_.push_back(t);
+            const uint32_t cell = cellOf(t);
+            scratch_[faceOf(t)] = isMixed(cell) ? nodeOf(band_.size()) : cell;
+            if (isMixed(cell)) band_.push_back(t);
         }
     }
 
@@ -115,22 +116,21 @@ private:
         return best.label;
     }
 
-    /// Nodes of connectivity: a whole cell where it is of one label all around, else each triangle (numbered after the
-    /// cells).
-    uint32_t nodeOf(uint32_t triangle) const {
-        const uint32_t cell = cellOf(triangle);
-        return isMixed(cell) ? graph_.size() + triangle : cell;
-    }
+    /// Nodes of connectivity: a whole cell where it is of one label all around, else each triangle (those of the band,
+    /// numbered after the cells).
+    uint32_t nodeOf(size_t inBand) const { return graph_.size() + uint32_t(inBand); }
+    size_t nodeCount() const { return graph_.size() + band_.size(); }
     void findSets() {
-        sets_ = DisjointSets(graph_.size() + component_.face.size());
+        sets_ = DisjointSets(nodeCount());
         for (const CellGraph::Link& link : graph_.links) {
             const bool areWhole = !isMixed(link.a) && !isMixed(link.b);
             if (areWhole && cellLabel_[link.a] == cellLabel_[link.b]) sets_.join(link.a, link.b);
         }
-        for (const uint32_t t : band_) {
+        for (size_t i = 0; i < band_.size(); ++i) {
+            const uint32_t f = faceOf(band_[i]);
             for (int k = 0; k < 3; ++k) {
-                const uint32_t g = linked_.neighbours[faceOf(t)][k];
-                if (g != kNone && labels_[g] == labels_[faceOf(t)]) sets_.join(nodeOf(t), nodeOf(scratch_[g]));
+                const uint32_t g = linked_.neighbours[f][k];
+                if (g != kNone && labels_[g] == labels_[f]) sets_.join(nodeOf(i), scratch_[g]);
             }
         }
     }
@@ -139,17 +139,17 @@ private:
     /// most. False where there were none.
     bool joinLooseFaces() {
         findSets();
-        std::vector<float> area(graph_.size() + component_.face.size(), 0.0f);
+        std::vector<float> area(nodeCount(), 0.0f);
         std::vector<std::pair<uint32_t, uint32_t>> sets; // label, set
         for (uint32_t c = 0; c < graph_.size(); ++c) {
             if (isMixed(c)) continue;
             area[sets_.find(c)] += graph_.areas[c];
             if (sets_.find(c) == c) sets.emplace_back(cellLabel_[c], c);
         }
-        for (const uint32_t t : band_) { // a share of the cell's area each: good enough to tell which set is largest
-            const uint32_t node = nodeOf(t);
+        for (size_t i = 0; i < band_.size(); ++i) { // an area each: good enough to tell which set is largest
+            const uint32_t node = nodeOf(i);
             area[sets_.find(node)] += 1e-9f;
-            if (sets_.find(node) == node) sets.emplace_back(labels_[faceOf(t)], node);
+            if (sets_.find(node) == node) sets.emplace_back(labels_[faceOf(band_[i])], node);
         }
         std::sort(sets.begin(), sets.end(), [&](const auto& a, const auto& b) {
             if (a.first != b.first) return a.first < b.first;
@@ -166,12 +166,12 @@ private:
 
     /// `loose`: sets, rising.
     void giveAway(std::span<const uint32_t> loose) {
-        std::vector<uint8_t> isLoose(graph_.size() + component_.face.size(), 0);
+        std::vector<uint8_t> isLoose(nodeCount(), 0);
         for (const uint32_t set : loose) isLoose[set] = 1;
         std::vector<std::pair<uint32_t, uint32_t>> members; // set, face
-        for (const uint32_t t : band_) {
-            const uint32_t set = sets_.find(nodeOf(t));
-            if (isLoose[set]) members.emplace_back(set, faceOf(t));
+        for (size_t i = 0; i < band_.size(); ++i) {
+            const uint32_t set = sets_.find(nodeOf(i));
+            if (isLoose[set]) members.emplace_back(set, faceOf(band_[i]));
         }
         std::stable_sort(members.begin(), members.end(),
                          [](const auto& a, const auto& b) { return a.first < b.first; });
