@@ -2,6 +2,8 @@
 
 #include "../part_order.h"
 
+#include <tbb/parallel_for.h>
+
 namespace xgc::bake {
 
 namespace {
@@ -21,16 +23,22 @@ AnalysedMesh::AnalysedMesh(const Mesh& m, const Topology& t) : mesh(m), topology
     }
     PieceScratch scratch = {std::vector<uint32_t>(mesh.positions.size(), kNone),
                             std::vector<uint32_t>(mesh.faces.size(), kNone)};
+    std::vector<Piece> pieces;
+    std::vector<double> shares;
     for (uint32_t c = 0; c < linked.componentCount(); ++c) {
         const double share = total > 0 ? componentArea[c] / total : 0;
         if (share >= kTinyShare) {
-            Piece piece = extractPiece(mesh, linked, facesOf(c), areas, componentArea[c], scratch);
-            components.push_back(analyseComponent(std::move(piece), share));
+            pieces.push_back(extractPiece(mesh, linked, facesOf(c), areas, componentArea[c], scratch));
+            shares.push_back(share);
             analysed.push_back(c);
         } else {
             tiny.push_back(c);
         }
     }
+    scratch = {};
+    components.resize(pieces.size());
+    tbb::parallel_for(size_t(0), pieces.size(),
+                      [&](size_t i) { components[i] = analyseComponent(std::move(pieces[i]), shares[i]); });
 }
 
 } // namespace xgc::bake
