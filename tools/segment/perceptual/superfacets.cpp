@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace xgc::bake {
 
@@ -9,26 +10,36 @@ namespace {
 
 constexpr float kFar = 1e30f;
 
-/// Cells by rounded-down distance. Distances are exact all the same: a bucket is worked on until nothing in it changes.
+/// Cells by rounded-down distance, the last that came to a bucket first. Distances are exact all the same: a bucket is
+/// worked on until nothing in it changes. Entries lie in one place, each bucket's in a list.
 class BucketQueue {
 public:
     explicit BucketQueue(float width) : inverseWidth_(1 / width) {}
 
     void push(float distance, uint32_t cell) {
-        const auto bucket = size_t(std::min(distance * inverseWidth_, 1e6f));
-        if (bucket >= buckets_.size()) buckets_.resize(bucket + 1);
-        buckets_[bucket].push_back({distance, cell});
+        const auto bucket = uint32_t(int(std::min(distance * inverseWidth_, 1e6f)));
+        if (bucket >= last_.size()) last_.resize(bucket + 1, kNone);
+        const uint32_t entry = free_ == kNone ? uint32_t(entries_.size()) : free_;
+        if (free_ == kNone) {
+            entries_.emplace_back();
+        } else {
+            free_ = entries_[free_].before;
+        }
+        entries_[entry] = {distance, cell, last_[bucket]};
+        last_[bucket] = entry;
         first_ = std::min(first_, bucket);
     }
     bool pop(float& distance, uint32_t& cell) {
-        while (first_ < buckets_.size() && buckets_[first_].empty()) ++first_;
-        if (first_ >= buckets_.size()) {
+        while (first_ < last_.size() && last_[first_] == kNone) ++first_;
+        if (first_ >= last_.size()) {
             first_ = 0;
             return false;
         }
-        distance = buckets_[first_].back().distance;
-        cell = buckets_[first_].back().cell;
-        buckets_[first_].pop_back();
+        const uint32_t entry = last_[first_];
+        distance = entries_[entry].distance;
+        cell = entries_[entry].cell;
+        last_[first_] = std::exchange(entries_[entry].before, free_);
+        free_ = entry;
         return true;
     }
 
@@ -36,10 +47,12 @@ private:
     struct Entry {
         float distance;
         uint32_t cell;
+        uint32_t before; ///< in the same bucket, or of those that are free; kNone: the last
     };
     float inverseWidth_;
-    size_t first_ = 0;
-    std::vector<std::vector<Entry>> buckets_;
+    uint32_t first_ = 0, free_ = kNone;
+    std::vector<uint32_t> last_; ///< per bucket
+    std::vector<Entry> entries_;
 };
 
 class Grower {
