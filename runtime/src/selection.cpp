@@ -98,19 +98,6 @@ LevelTest Selection::Impl::Subject::wholeTest(const LevelPolicy& by, const Scene
     return {by, in.errorsOf(instance.asset), 1, sphere.radius, standingFor(by, instance.placement, sphere)};
 }
 
-LevelTest Selection::Impl::Subject::patchTest(const LevelPolicy& by, uint32_t patch) const {
-    const PatchBounds& bounds = patches[patch];
-    const Sphere sphere{glm::vec3(bounds.sphere), bounds.sphere.w};
-    const float steering = controls.empty() ? 1 : controls[bounds.part].importance;
-    const size_t count = asset.levelCount();
-    return {by, asset.patchErrors.subspan(patch * count, count), bounds.importance * steering,
-            asset.record->sphereRadius, standingFor(by, instance.placement, sphere)};
-}
-
-uint32_t Selection::Impl::Subject::controlled(uint32_t patch, uint32_t level) const {
-    return controls.empty() ? level : steered(controls[patches[patch].part], level, asset.levelCount());
-}
-
 void Selection::Impl::enter(uint32_t id) {
     ViewInstance& own = instances[id];
     const uint32_t generation = scene->instances[id].generation;
@@ -142,20 +129,27 @@ void Selection::Impl::decideWhole(const Subject& s) {
 
 /// Writes the instance's kind and, where it is mixed, which patches are in the frustum and large enough.
 void Selection::Impl::cull(const Subject& s) {
-    const Frustum frustum = toMeshSpace(desc.frustum, s.instance.placement.toWorld);
+    const Placement& placement = s.instance.placement;
     const Sphere bounds = sphereOf(*s.asset.record);
+    const Sphere inWorld{placement.toWorld * glm::vec4(bounds.center, 1), bounds.radius * placement.maxScale};
     const bool minding = desc.contributionPixels > 0;
     const auto small = [&](const Sphere& sphere) {
-        const Standing at = standing(s.instance.placement, desc.view, sphere);
-        return minding && tooSmall(desc.contributionPixels, desc.view.pixelsPerUnit, desc.view.orthographic, at);
+        if (!minding) return false;
+        const Standing at = standing(placement, desc.view, sphere);
+        return tooSmall(desc.contributionPixels, desc.view.pixelsPerUnit, desc.view.orthographic, at);
     };
-    const Side side = sideOf(frustum, bounds);
+    const Side side = sideOf(desc.frustum, inWorld);
     s.own.kind = s.own.whole ? InstanceKind::whole : InstanceKind::mixed;
     if (!s.instance.visible || side == Side::outside || small(bounds)) s.own.kind = InstanceKind::culled;
     if (s.own.kind != InstanceKind::mixed) return;
+    const Frustum frustum = side == Side::across ? toMeshSpace(desc.frustum, placement.toWorld) : Frustum{};
+    if (frustum.planeCount == 0 && !minding && s.controls.empty()) {
+        std::fill(s.visible.begin(), s.visible.end(), uint8_t(1));
+        return;
+    }
     for (size_t p = 0; p < s.patches.size(); ++p) {
         const Sphere sphere{glm::vec3(s.patches[p].sphere), s.patches[p].sphere.w};
-        const bool out = side == Side::across && sideOf(frustum, sphere) == Side::outside;
+        const bool out = sideOf(frustum, sphere) == Side::outside;
         s.visible[p] = !out && !small(sphere) && !s.hidden(uint32_t(p));
     }
 }
@@ -190,23 +184,25 @@ void Selection::Impl::chooseMixed(const Subject& s, ChunkCount& count) {
     const uint32_t coarsest = s.asset.levelCount() - 1;
     const bool mayCoarsen = !s.own.inBelt || desc.triangleBudget > 0;
     count.stats.consideredPatches += uint32_t(s.patches.size());
+    uint32_t culled = 0, changed = 0;
     for (uint32_t p = 0; p < s.patches.size(); ++p) {
-        const uint8_t before = s.levels[p];
+        uint32_t level = coarsest;
         if (s.visible[p]) {
             const uint32_t own = s.patchTest(policy, p).next(s.wanted[p], mayCoarsen);
             s.wanted[p] = uint8_t(own);
-            s.levels[p] = uint8_t(withReference(s, p, s.controlled(p, own)));
+            level = withReference(s, p, s.controlled(p, own));
             // Its cone holds at coneLevel and finer ones alone.
-            if (s.levels[p] <= s.patches[p].coneLevel && turnedAway(eye, s.patches[p])) {
+            if (level <= s.patches[p].coneLevel && turnedAway(eye, s.patches[p])) {
                 s.visible[p] = 0;
-                s.levels[p] = uint8_t(std::min(s.patches[p].coneLevel, coarsest));
+                level = std::min(s.patches[p].coneLevel, coarsest);
             }
-        } else {
-            s.levels[p] = uint8_t(coarsest);
         }
-        count.stats.culledPatches += !s.visible[p];
-        count.stats.changedPatches += before != s.levels[p];
+        culled += !s.visible[p];
+        changed += s.levels[p] != level;
+        s.levels[p] = uint8_t(level);
     }
+    count.stats.culledPatches += culled;
+    count.stats.changedPatches += changed;
 }
 
 void Selection::Impl::choose(uint32_t id, ChunkCount& count) {

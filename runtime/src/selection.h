@@ -87,6 +87,20 @@ struct Selection::Impl : Allocated<Selection::Impl> {
     void forInstances(Work work);
 };
 
+// In the innermost loop.
+inline LevelTest Selection::Impl::Subject::patchTest(const LevelPolicy& by, uint32_t patch) const {
+    const PatchBounds& bounds = patches[patch];
+    const Sphere sphere{glm::vec3(bounds.sphere), bounds.sphere.w};
+    const float steering = controls.empty() ? 1 : controls[bounds.part].importance;
+    const size_t count = asset.levelCount();
+    return {by, asset.patchErrors.subspan(patch * count, count), bounds.importance * steering,
+            asset.record->sphereRadius, standingFor(by, instance.placement, sphere)};
+}
+
+inline uint32_t Selection::Impl::Subject::controlled(uint32_t patch, uint32_t level) const {
+    return controls.empty() ? level : steered(controls[patches[patch].part], level, asset.levelCount());
+}
+
 template <typename Work>
 void Selection::Impl::forInstances(Work work) {
     struct Pass {

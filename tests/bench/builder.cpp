@@ -4,9 +4,9 @@
 
 namespace xgc::bench {
 
-bake::Hierarchy build(const Subject& subject, const bake::Segmentation& parts, const bake::HierarchyOptions& options) {
-    const bake::PatchAssignment patches =
-        bake::splitPatches(subject.mesh, subject.topology, parts, bake::kDefaultPatchFaces);
+bake::Hierarchy build(const Subject& subject, const bake::Segmentation& parts, const bake::HierarchyOptions& options,
+                      uint32_t patchFaces) {
+    const bake::PatchAssignment patches = bake::splitPatches(subject.mesh, subject.topology, parts, patchFaces);
     return bake::buildDefaultHierarchy(subject.mesh, subject.topology, patches, options);
 }
 

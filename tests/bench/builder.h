@@ -7,9 +7,9 @@
 
 namespace xgc::bench {
 
-/// The default hierarchy over patches of the default size.
+/// The default hierarchy over patches of about so many faces at most.
 bake::Hierarchy build(const Subject& subject, const bake::Segmentation& parts,
-                      const bake::HierarchyOptions& options = {});
+                      const bake::HierarchyOptions& options = {}, uint32_t patchFaces = bake::kDefaultPatchFaces);
 
 /// E of every patch and level.
 bake::PatchErrors measureErrors(const Subject& subject, const bake::Hierarchy& hierarchy);
