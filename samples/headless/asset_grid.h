@@ -33,6 +33,7 @@ public:
     Status addTo(vulkan::Renderer& renderer);
 
     std::vector<SceneInstance>& instances() { return instances_; }
+    const std::vector<SceneInstance>& instances() const { return instances_; }
     const std::vector<std::unique_ptr<LoadedAsset>>& assets() const { return assets_; }
     /// A sphere around everything.
     glm::vec3 center() const { return center_; }

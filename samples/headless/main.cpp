@@ -3,6 +3,7 @@
 #include "asset_grid.h"
 #include "camera_path.h"
 #include "frame_line.h"
+#include "recorder.h"
 
 #include <xgc/bake/image.h>
 #include <xgc/vulkan/headless_device.h>
@@ -33,6 +34,7 @@ struct Options {
     std::vector<float> bands; ///< empty: errorPixels decides
     uint32_t budget = 0;      ///< triangles a frame; 0: as many as it takes
     std::string mode = "shaded";
+    std::filesystem::path record; ///< empty: no flight is written
     uint32_t width = 1280, height = 720;
     uint32_t instances = 1;
 };
@@ -42,6 +44,7 @@ struct App {
     Options options;
     AssetGrid scene;
     CameraPath path;
+    Recorder recorder;
     vulkan::HeadlessDevice device;
     vulkan::Context context;
     vulkan::Renderer renderer;
@@ -144,7 +147,9 @@ bake::Status fly(App& app) {
     uint64_t previous = 0;
     for (uint32_t frame = 0; frame < app.options.frames; ++frame) {
         uint64_t ticket = 0;
-        const Status status = drawFrame(app, cameraAt(app, frame), ticket);
+        const vulkan::Camera camera = cameraAt(app, frame);
+        if (!app.options.record.empty()) app.recorder.add(selectionFor(app, camera));
+        const Status status = drawFrame(app, camera, ticket);
         if (!status.ok()) return fromRuntime(status);
         fmt::print("{}\n", frameLine(frame, app.renderer, app.scene.instances()));
         if (previous > 0) {
@@ -153,7 +158,8 @@ bake::Status fly(App& app) {
         }
         previous = ticket;
     }
-    return writeFrame(app, previous, app.options.frames - 1);
+    const bake::Status written = writeFrame(app, previous, app.options.frames - 1);
+    return written.ok() && !app.options.record.empty() ? app.recorder.write(app.options.record) : written;
 }
 
 bake::Status run(App& app) {
@@ -168,6 +174,7 @@ bake::Status run(App& app) {
         return bake::systemError(fmt::format("{}: {}", app.options.output.string(), error.message()));
     }
     status = fromRuntime(createDevice(app));
+    if (status.ok() && !app.options.record.empty()) status = app.recorder.begin(app.scene, app.options.inputs);
     if (status.ok()) status = settle(app);
     if (status.ok()) status = fly(app);
     return status;
@@ -204,6 +211,7 @@ void addOptions(CLI::App& cli, Options& options) {
            },
            "Width and height in pixels")
         ->default_str("1280x720");
+    cli.add_option("--record", options.record, "Write the flight to a file that xgc replay plays again");
     cli.add_option("--instances", options.instances, "How often each asset stands there")
         ->check(CLI::Range(1, 10000))
         ->capture_default_str();

@@ -18,6 +18,7 @@ void addModel(CLI::App& app, Run& run);
 void addBake(CLI::App& app, Run& run);
 void addInspect(CLI::App& app, Run& run);
 void addVerify(CLI::App& app, Run& run);
+void addReplay(CLI::App& app, Run& run);
 void addSegment(CLI::App& app, Run& run);
 #ifdef XGC_HAS_VULKAN
 void addRender(CLI::App& app, Run& run);

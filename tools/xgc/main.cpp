@@ -43,6 +43,7 @@ int main(int argc, char** argv) {
     xgc::tool::addInspect(app, run);
     xgc::tool::addVerify(app, run);
     xgc::tool::addExtract(app, run);
+    xgc::tool::addReplay(app, run);
 #ifdef XGC_HAS_VULKAN
     xgc::tool::addRender(app, run);
 #endif
