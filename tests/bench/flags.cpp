@@ -25,8 +25,10 @@ void printUsage(const char* program, const std::vector<std::string>& sections) {
                        "  --runs N          of what is timed\n"
                        "  --data FOLDER     the real meshes (default: $XGC_DATA, ../shared/data)\n"
                        "  --csv FOLDER      write results there, with --commit TEXT and --machine TEXT\n"
+                       "  --plots FOLDER    draw results there, as SVG\n"
                        "  --outside COMMAND compare with other simplifiers too: given a PLY file, a count of faces\n"
-                       "                    and a folder, it writes FOLDER/PROGRAM.ply for each of them\n"
+                       "                    and a folder, it writes FOLDER/PROGRAM.ply for each of them; for the\n"
+                       "                    section view see outside_cut.h\n"
                        "  --beside COMMAND  time it in turn with the builder: given a PLY file, it prints the\n"
                        "                    seconds that it took on the clock and of the processor\n"
                        "  --gltfpack FILE   the program\n");
@@ -68,6 +70,8 @@ bool parseFlags(int argc, char** argv, const std::vector<std::string>& sections,
             flags.data = value;
         } else if (name == "csv") {
             flags.csv = value;
+        } else if (name == "plots") {
+            flags.plots = value;
         } else if (name == "outside") {
             flags.outside = value;
         } else if (name == "beside") {

@@ -17,6 +17,7 @@ struct Flags {
     uint32_t runs = 5;                 ///< of what is timed
     std::filesystem::path data;        ///< the real meshes; empty where absent
     std::filesystem::path csv;         ///< folder for results; empty: none
+    std::filesystem::path plots;       ///< folder for pictures of results; empty: none
     std::string outside;               ///< command that runs other simplifiers, see Peers; empty: none
     std::string beside;                ///< command timed in turn with the builder, see hierarchy_speed.cpp
     std::filesystem::path gltfpack;    ///< program; empty where absent

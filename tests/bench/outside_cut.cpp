@@ -95,6 +95,7 @@ CutAsset::CutAsset(const AssetView& source, const std::vector<uint32_t>& indices
     part_ = source.parts[0];
     part_.firstPatch = 0;
     part_.patchCount = 1;
+    part_.firstNeighbour = part_.neighbourCount = 0;
     list_ = {0, faces};
     range_ = {0, rows};
     collapse_.assign(rows, format::kNever);
@@ -111,6 +112,9 @@ CutAsset::CutAsset(const AssetView& source, const std::vector<uint32_t>& indices
     view.faceLists = {&list_, 1};
     view.parts = {&part_, 1};
     view.partNeighbours = {};
+    view.contours = {};
+    view.partShapes = {};
+    view.merges = {};
     view.collapseLevels = collapse_;
     view.birthLevels = {};
     view.parentsWide = parents_;

@@ -1,6 +1,7 @@
 #include "image_difference.h"
 #include "outside_cut.h"
 #include "photographer.h"
+#include "plot.h"
 #include "runtime_sections.h"
 #include "view_scenes.h"
 
@@ -339,6 +340,21 @@ void write(const Flags& flags, const ViewScene& scene, const std::vector<FrameFi
     }
 }
 
+void draw(const Flags& flags, const ViewScene& scene, const std::vector<FrameFigures>& frames) {
+    if (flags.plots.empty()) return;
+    Plot plot;
+    plot.title = scene.name;
+    plot.xName = "frame";
+    plot.yName = "triangles";
+    plot.lines = {
+        {"a mesh", "#8a8f98", {}}, {"a part", "#c9705f", {}}, {"a patch", "#2f6db5", {}}, {"clusters", "#5a9a4a", {}}};
+    for (const FrameFigures& frame : frames) {
+        for (uint32_t m = 0; m < kMethodCount; ++m) plot.lines[m].values.push_back(double(frame.triangles[m]));
+        if (!frame.cutTriangles.empty()) plot.lines[3].values.push_back(double(frame.cutTriangles[0]));
+    }
+    writePlot(plot, flags.plots / fmt::format("view-{}.svg", scene.name));
+}
+
 } // namespace
 
 int benchView(const Flags& flags) {
@@ -361,6 +377,7 @@ int benchView(const Flags& flags) {
         }
         print(*scene, flight.frames());
         write(flags, *scene, flight.frames());
+        draw(flags, *scene, flight.frames());
     }
     return 0;
 }
