@@ -380,6 +380,25 @@ TEST_CASE("scaling by a power of two changes nothing, and threads do not") {
     CHECK(partsOf(w).facePart == parts.facePart);
 }
 
+TEST_CASE("how a mesh lies in space and the order of its faces hardly matter") {
+    const Welded w = weldedWithTopology(makeModel(BundledModel::creature, 9000));
+    const uint32_t count = w.mesh.faceCount();
+    Welded changed = w;
+    for (glm::vec3& p : changed.mesh.positions)
+        p = 3.0f * glm::vec3(-0.6f * p.y + 0.8f * p.z, p.x, 0.8f * p.y + 0.6f * p.z) + glm::vec3(1, 2, 3);
+    for (uint32_t f = 0; f < count / 2; ++f) std::swap(changed.mesh.faces[f], changed.mesh.faces[count - 1 - f]);
+    changed.topology = buildTopology(changed.mesh);
+    const std::vector<uint32_t> before = partsOf(w).facePart, after = partsOf(changed).facePart;
+    std::map<std::pair<uint32_t, uint32_t>, uint32_t> both; // faces per pair of parts
+    std::map<uint32_t, uint32_t> most;                      // of them, per part
+    for (uint32_t f = 0; f < count; ++f) ++both[{before[f], after[count - 1 - f]}];
+    for (const auto& [pair, faces] : both) most[pair.first] = std::max(most[pair.first], faces);
+    uint32_t alike = 0;
+    for (const auto& [part, faces] : most) alike += faces;
+    CHECK(most.size() == partsOf(changed).partCount());
+    CHECK(alike > count * 97 / 100);
+}
+
 TEST_CASE("the bundled models fall into sensible parts") {
     const std::map<BundledModel, std::pair<uint32_t, uint32_t>> kCounts = {{BundledModel::creature, {10, 40}},
                                                                            {BundledModel::shaft, {3, 40}},

@@ -21,8 +21,7 @@ Component analyseComponent(Piece piece, double share) {
     }
     component.cells = makeCells(piece, resolution.mostCells);
     component.face = std::move(piece.face);
-    component.centroid = piece.centroid;
-    component.scale = piece.scale;
+    component.pose = piece.pose;
     const CellGraph& graph = component.cells.graph;
     component.features = findEdgeFeatures(graph);
     component.superfacets = growSuperfacets(graph, component.features, resolution.superfacets);

@@ -16,8 +16,7 @@ struct Component {
     std::vector<Merge> merges;    ///< of the superfacets
     bool wasSplit = false;        ///< its faces, into several triangles
 
-    glm::dvec3 centroid{0}; ///< of the component, mesh units
-    double scale = 1;       ///< from them
+    Pose pose;
 
     bool wasJoined() const { return cells.graph.size() < face.size(); }
     /// Regions that no merge can join.

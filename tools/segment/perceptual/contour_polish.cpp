@@ -90,8 +90,8 @@ private:
         const uint32_t face = faceOf(triangle), cell = cellOf(triangle);
         const glm::uvec3 c = linked_.corners[face];
         const glm::vec3 p = mesh_.positions[c.x], q = mesh_.positions[c.y], r = mesh_.positions[c.z];
-        const glm::vec3 center((glm::dvec3(p + q + r) / 3.0 - component_.centroid) * component_.scale);
-        const glm::vec3 crossed = glm::cross(q - p, r - p);
+        const glm::vec3 center = component_.pose.placeOf(glm::dvec3(p + q + r) / 3.0);
+        const glm::vec3 crossed = component_.pose.directionOf(glm::cross(q - p, r - p));
         const float length = glm::length(crossed);
         votes_.clear();
         for (uint32_t i = aroundOffsets_[cell]; i < aroundOffsets_[cell + 1]; ++i) {

@@ -21,7 +21,7 @@ double highestCost(std::span<const Merge> merges) {
 
 uint32_t naturalCount(std::span<const Merge> merges, uint32_t islands) {
     constexpr double kDear = 0.508; ///< scaled
-    constexpr double kWhole = 0.5;  ///< a last merge below this: one part
+    constexpr double kWhole = 0.42; ///< a last merge below this: one part
     if (merges.empty() || merges.back().cost < kWhole) return islands;
     const double limit = kDear * exact::pow(highestCost(merges), kOwnScale);
     size_t taken = 0;

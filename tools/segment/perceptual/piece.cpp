@@ -31,17 +31,7 @@ Piece extractPiece(const Mesh& mesh, const LinkedFaces& linked, std::span<const 
     Piece piece;
     piece.face = inRisingOrder(faces, scratch.ofFace);
     for (uint32_t t = 0; t < piece.face.size(); ++t) scratch.ofFace[piece.face[t]] = t;
-
-    glm::dvec3 centroid(0);
-    for (const uint32_t f : piece.face) {
-        const glm::uvec3 c = linked.corners[f];
-        const glm::dvec3 sum =
-            glm::dvec3(mesh.positions[c.x]) + glm::dvec3(mesh.positions[c.y]) + glm::dvec3(mesh.positions[c.z]);
-        centroid += sum * (faceAreas[f] / (3 * area));
-    }
-    const double scale = 1 / std::sqrt(area);
-    piece.centroid = centroid;
-    piece.scale = scale;
+    piece.pose = poseOf(mesh, linked, piece.face, faceAreas, area);
     std::vector<uint32_t> used;
     used.reserve(faces.size());
     piece.positions.reserve(faces.size() / 2 + 2);
@@ -54,7 +44,7 @@ Piece extractPiece(const Mesh& mesh, const LinkedFaces& linked, std::span<const 
             if (scratch.ofPosition[p] == kNone) {
                 scratch.ofPosition[p] = uint32_t(piece.positions.size());
                 used.push_back(p);
-                piece.positions.emplace_back((glm::dvec3(mesh.positions[p]) - centroid) * scale);
+                piece.positions.push_back(piece.pose.placeOf(glm::dvec3(mesh.positions[p])));
             }
             corners[k] = scratch.ofPosition[p];
             const uint32_t g = linked.neighbours[f][k];
@@ -256,8 +246,7 @@ Piece splitLongEdges(const Piece& piece, uint32_t leastTriangles) {
         splitter.splitLongerThan(std::max(enough, longest / 2));
     }
     Piece fine = splitter.take();
-    fine.centroid = piece.centroid;
-    fine.scale = piece.scale;
+    fine.pose = piece.pose;
     return fine;
 }
 

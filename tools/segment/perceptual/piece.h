@@ -1,17 +1,16 @@
 #pragma once
 
-#include "linked_faces.h"
+#include "pose.h"
 
 namespace xgc::bake {
 
-/// One component of a mesh, to be segmented by itself: moved to its centroid and scaled to an area of 1.
+/// One component of a mesh, to be segmented by itself, in its pose.
 struct Piece {
     std::vector<glm::vec3> positions;
     std::vector<glm::uvec3> triangles;  ///< outwards by their corners' order
     std::vector<glm::uvec3> neighbours; ///< as LinkedFaces, in triangles of the piece
     std::vector<uint32_t> face;         ///< per triangle: of the mesh
-    glm::dvec3 centroid{0};             ///< that was moved to the origin
-    double scale = 1;                   ///< by which it was scaled then
+    Pose pose;
     uint32_t triangleCount() const { return uint32_t(triangles.size()); }
 };
 

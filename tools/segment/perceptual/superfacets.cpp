@@ -60,12 +60,13 @@ public:
     Grower(const CellGraph& graph, const EdgeFeatures& features)
         : graph_(graph), steps_(graph.arcs.size()), reached_(graph.size(), {kFar, kNone}),
           queue_(0.3f / std::sqrt(float(graph.size()))) {
-        constexpr float kToll = 0.15f;
+        constexpr float kToll = 0.6f;
         std::vector<float> cost(graph.links.size());
         for (size_t l = 0; l < cost.size(); ++l) {
             const CellGraph::Link& link = graph.links[l];
             const float step = glm::length(graph.centers[link.b] - graph.centers[link.a]);
-            cost[l] = step + kToll * std::max(0.0f, -features.angle[l]);
+            cost[l] =
+                step + kToll * (features.isNoisy() ? filteredTurn(link, features) : std::max(0.0f, -features.angle[l]));
         }
         for (size_t a = 0; a < steps_.size(); ++a) steps_[a] = {graph.arcs[a].to, cost[graph.arcs[a].link]};
     }
@@ -80,6 +81,12 @@ public:
     }
 
 private:
+    /// How far the filtered normals turn across a link; 0 where convex.
+    float filteredTurn(const CellGraph::Link& link, const EdgeFeatures& features) const {
+        const glm::vec3 turn = features.filteredNormals[link.b] - features.filteredNormals[link.a];
+        return glm::dot(turn, graph_.centers[link.b] - graph_.centers[link.a]) < 0 ? glm::length(turn) : 0;
+    }
+
     /// An arc by what it costs.
     struct Step {
         uint32_t to;
@@ -116,11 +123,14 @@ private:
         }
     }
 
+    /// The first seed lies farthest from the centroid, which is the origin, and of mirror images on the same side
+    /// always.
     void seedIslands() {
+        constexpr glm::vec3 kTowards(0.02f, 0.012f, 0.006f);
         uint32_t farthest = 0;
         float most = -1;
         for (uint32_t c = 0; c < graph_.size(); ++c) {
-            const float d = glm::dot(graph_.centers[c], graph_.centers[c]); // the centroid is the origin
+            const float d = glm::length(graph_.centers[c]) + glm::dot(kTowards, graph_.centers[c]);
             if (d > most) {
                 most = d;
                 farthest = c;

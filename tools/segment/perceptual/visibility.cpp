@@ -88,22 +88,7 @@ float depthFrom(const CellGraph& graph, uint32_t cell, const glm::vec3& normal, 
     return weights > 0 ? sum / weights : median;
 }
 
-/// The cells at 1/6, 3/6 and 5/6 of a superfacet's area.
-std::array<uint32_t, kProbes> probesOf(const CellGraph& graph, std::span<const uint32_t> cells) {
-    float area = 0;
-    for (const uint32_t c : cells) area += graph.areas[c];
-    std::array<uint32_t, kProbes> probes;
-    probes.fill(cells.back());
-    float before = 0;
-    uint32_t next = 0;
-    for (const uint32_t c : cells) {
-        before += graph.areas[c];
-        while (next < kProbes && before >= area * (float(next) + 0.5f) / float(kProbes)) probes[next++] = c;
-    }
-    return probes;
-}
-
-/// The cell nearest to a superfacet's centroid.
+/// The cell nearest to the centroid of some.
 uint32_t middleOf(const CellGraph& graph, std::span<const uint32_t> cells) {
     glm::vec3 centroid(0);
     float area = 0;
@@ -121,6 +106,39 @@ uint32_t middleOf(const CellGraph& graph, std::span<const uint32_t> cells) {
         best = c;
     }
     return best;
+}
+
+/// The cells in the middle of each third of a superfacet, along the axis on which it extends most: by place, so that
+/// other numbers or another tessellation hardly change them.
+std::array<uint32_t, kProbes> probesOf(const CellGraph& graph, std::span<const uint32_t> cells) {
+    glm::vec3 low(INFINITY), high(-INFINITY);
+    float area = 0;
+    for (const uint32_t c : cells) {
+        low = glm::min(low, graph.centers[c]);
+        high = glm::max(high, graph.centers[c]);
+        area += graph.areas[c];
+    }
+    const glm::vec3 extent = high - low;
+    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    std::vector<uint32_t> along(cells.begin(), cells.end());
+    std::sort(along.begin(), along.end(), [&](uint32_t a, uint32_t b) {
+        const float x = graph.centers[a][axis], y = graph.centers[b][axis];
+        return x != y ? x < y : a < b;
+    });
+    std::array<uint32_t, kProbes> probes;
+    probes.fill(along.back());
+    size_t first = 0;
+    float before = 0;
+    for (uint32_t p = 0; p < kProbes && first < along.size(); ++p) {
+        const float until = area * float(p + 1) / float(kProbes);
+        size_t end = first;
+        do {
+            before += graph.areas[along[end++]];
+        } while (end < along.size() && (p + 1 == kProbes || before + 0.5f * graph.areas[along[end]] < until));
+        probes[p] = middleOf(graph, std::span(along).subspan(first, end - first));
+        first = end;
+    }
+    return probes;
 }
 
 bool isSampled(uint32_t i, uint32_t j) {
