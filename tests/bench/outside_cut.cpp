@@ -3,9 +3,13 @@
 #include <xgc/indices.h>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -24,6 +28,26 @@ bool get(std::ifstream& in, T* values, size_t count) {
     return bool(in.read(reinterpret_cast<char*>(values), std::streamsize(count * sizeof(T))));
 }
 
+/// Unit normals of the rows; zero where the asset has none.
+std::vector<glm::vec3> normalsOf(const AssetView& asset) {
+    std::vector<glm::vec3> out(asset.positions.size(), glm::vec3(0));
+    for (uint32_t i = 0; i < asset.vertexStreamCount; ++i) {
+        const VertexStream& stream = asset.vertexStreams[i];
+        if (stream.kind != format::StreamKind::normal || stream.format != format::StreamFormat::snorm16x2) continue;
+        for (uint32_t row = 0; row < stream.count; ++row) {
+            int16_t packed[2];
+            std::memcpy(packed, stream.bytes.data() + size_t(row) * stream.stride, sizeof(packed));
+            const glm::vec2 e = glm::max(glm::vec2(packed[0], packed[1]) / 32767.0f, glm::vec2(-1));
+            glm::vec3 n(e, 1 - std::fabs(e.x) - std::fabs(e.y));
+            const float fold = std::max(-n.z, 0.0f);
+            n.x += n.x >= 0 ? -fold : fold;
+            n.y += n.y >= 0 ? -fold : fold;
+            out[row] = glm::normalize(n);
+        }
+    }
+    return out;
+}
+
 void writeMesh(const std::filesystem::path& file, const AssetView& asset) {
     const std::vector<uint8_t> finest(asset.patchCount(), 0);
     std::vector<uint32_t> scratch(scratchCapacity(asset)), indices, own;
@@ -36,6 +60,8 @@ void writeMesh(const std::filesystem::path& file, const AssetView& asset) {
     std::ofstream out(file, std::ios::binary);
     put(out, counts, 2);
     put(out, asset.positions.data(), asset.positions.size());
+    const std::vector<glm::vec3> normals = normalsOf(asset);
+    put(out, normals.data(), normals.size());
     put(out, indices.data(), indices.size());
 }
 

@@ -26,9 +26,9 @@ struct OutsideCut {
     std::vector<uint32_t> indices; ///< vertex rows of the asset
 };
 
-/// Runs `command FOLDER`. Little-endian files in it: mesh.bin (u32 vertices, u32 indices, float3 positions of the
-/// asset's rows, u32 indices of level 0), cameras.bin (u32 count, OutsideCamera[]); the command writes cut.bin (a
-/// camera each: u32 clusters, u32 indices, float microseconds, u32[]).
+/// Runs `command FOLDER`. Little-endian files in it: mesh.bin (u32 vertices, u32 indices, float3 positions and
+/// float3 normals of the asset's rows, u32 indices of level 0), cameras.bin (u32 count, OutsideCamera[]); the command
+/// writes cut.bin (a camera each: u32 clusters, u32 indices, float microseconds, u32[]).
 bake::Status runOutsideCut(const std::string& command, const AssetView& asset,
                            const std::vector<OutsideCamera>& cameras, std::vector<OutsideCut>& cuts);
 

@@ -107,7 +107,7 @@ bake::Status make(const Source& source, ViewScene& scene) {
 } // namespace
 
 bake::Status viewScenes(const Flags& flags, std::vector<std::unique_ptr<ViewScene>>& out) {
-    std::vector<Source> sources = {{"terrain", {}, 500'000, false, true},
+    std::vector<Source> sources = {{"terrain", {}, 1'000'000, false, true},
                                    {"temple", {}, 120'000, false, true},
                                    {"creatures", {}, 60'000, false, true}};
     for (Source& source : dragon()) {
