@@ -2,6 +2,8 @@
 
 #include "scene.h"
 
+#include <xgc/morph.h>
+
 #include <algorithm>
 #include <cassert>
 #include <utility>
@@ -36,6 +38,7 @@ struct DrawnInstance {
     uint32_t generation = 0;
     InstanceKind kind = InstanceKind::culled; ///< culled: holds nothing
     bool late = false;                        ///< is not drawn as was selected
+    bool morphs = false;                      ///< has fractions
     uint8_t wholeState = 0;
     uint32_t asset = 0;
     uint32_t firstSlot = 0;
@@ -60,6 +63,7 @@ struct DrawList::Impl : Allocated<DrawList::Impl> {
     FixedArray<DrawnInstance> instances;
     FixedArray<uint32_t> slotRanges; ///< kNoRange: not shown
     FixedArray<uint8_t> slotLevels;
+    FixedArray<float> slotFractions; ///< of instances that morph
 
     FixedArray<WholeState> wholeStates; ///< asset * kMaxWholeStates + state
     FixedArray<uint8_t> assetsInSight;  ///< hold their coarsest state
@@ -122,6 +126,7 @@ struct DrawList::Impl : Allocated<DrawList::Impl> {
     void listRebinds(const DrawnInstance& own, Levels after, std::span<const uint8_t> shown);
     bool bind(DrawnInstance& own, Levels after, std::span<const uint8_t> shown);
     void buildAhead(const DrawnInstance& own, Levels after, std::span<const uint8_t> shown);
+    void followFractions(DrawnInstance& own, uint32_t id);
     void keepBudget();
 
     void listStates();
@@ -142,7 +147,7 @@ bool DrawList::Impl::allocate() {
     const size_t states = size_t(config.scene.assetCapacity) * kMaxWholeStates;
     const size_t drawCapacity = slots + config.wholeRangeCapacity;
     return instances.allocate(config.scene.instanceCapacity) && slotRanges.allocate(slots) &&
-           slotLevels.allocate(slots) && wholeStates.allocate(states) &&
+           slotLevels.allocate(slots) && slotFractions.allocate(slots) && wholeStates.allocate(states) &&
            assetsInSight.allocate(config.scene.assetCapacity) &&
            wholeHandles.create(config.wholeRangeCapacity, config.wholeRangeCapacity) &&
            wholeRanges.allocate(config.wholeRangeCapacity) && planLevels.allocate(patches) &&
@@ -244,13 +249,26 @@ void DrawList::Impl::dropGone() {
 void DrawList::Impl::follow(uint32_t id) {
     DrawnInstance& own = instances[id];
     const InstanceKind kind = selection->kind(id);
-    own.late = false;
+    own.late = own.morphs = false;
     if (kind == InstanceKind::culled) return release(own, *cache);
     if (!assetsInSight[own.asset]) assetsInSight[own.asset] = holdWhole(own.asset, coarsestState(own.asset));
     own.late = kind == InstanceKind::whole ? !followWhole(own, selection->wholeState(id))
                                            : !followMixed(own, selection->levels(id), selection->visible(id));
+    if (own.kind == InstanceKind::mixed && kind == InstanceKind::mixed) followFractions(own, id);
     stats.instances += own.kind != InstanceKind::culled;
     stats.deferredInstances += own.late;
+}
+
+/// The lambdas next to the selected ones that the drawn levels hold.
+void DrawList::Impl::followFractions(DrawnInstance& own, uint32_t id) {
+    const Levels target = selection->levels(id);
+    const std::span<const float> wanted = selection->fractions(id);
+    own.morphs = !wanted.empty();
+    for (uint32_t p = 0; p < wanted.size(); ++p) {
+        const uint32_t slot = own.firstSlot + p;
+        const float ahead = float(target[p]) + wanted[p] - float(slotLevels[slot]);
+        slotFractions[slot] = std::clamp(ahead, 0.0f, kMaxFraction);
+    }
 }
 
 /// True where the instance stands as selected now.
@@ -573,6 +591,11 @@ uint32_t DrawList::wholeState(uint32_t id) const {
 Levels DrawList::levels(uint32_t id) const {
     assert(kind(id) == InstanceKind::mixed);
     return {impl_->slotLevels.data() + impl_->instances[id].firstSlot, impl_->instances[id].patchCount};
+}
+std::span<const float> DrawList::fractions(uint32_t id) const {
+    assert(kind(id) == InstanceKind::mixed);
+    if (!impl_->instances[id].morphs) return {};
+    return {impl_->slotFractions.data() + impl_->instances[id].firstSlot, impl_->instances[id].patchCount};
 }
 
 } // namespace xgc

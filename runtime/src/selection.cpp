@@ -1,5 +1,7 @@
 #include "selection.h"
 
+#include "continuous_level.h"
+
 #include <cassert>
 #include <cmath>
 
@@ -37,6 +39,7 @@ Selection& Selection::operator=(Selection&&) noexcept = default;
 bool Selection::Impl::allocate() {
     return instances.allocate(config.instanceCapacity) && wanted.allocate(config.patchCapacity) &&
            levels.allocate(config.patchCapacity) && visible.allocate(config.patchCapacity) &&
+           fractions.allocate(config.patchCapacity) &&
            chunks.allocate((size_t(config.instanceCapacity) + kChunk - 1) / kChunk);
 }
 
@@ -59,6 +62,8 @@ void Selection::Impl::begin(const Scene& of, const SelectionDesc& wish) {
     assert(desc.hysteresis >= 0 && desc.hysteresis < 1);
     assert(std::is_sorted(desc.bands.begin(), desc.bands.end()));
     assert(desc.triangleBudget == 0 || desc.policy == Policy::errorPixels);
+    assert(!desc.morph || (desc.hysteresis == 0 && desc.triangleBudget == 0));
+    assert(!desc.morph || desc.morphRate > 0);
     assert((!desc.reference || desc.reference->impl_->scene == scene) && "update the reference first");
     policy = levelPolicy(desc, desc.pixels);
     stats = {.triangleBudget = desc.triangleBudget};
@@ -80,7 +85,8 @@ Selection::Impl::Subject Selection::Impl::subject(uint32_t id) {
               .controls = {},
               .wanted = slots(wanted),
               .levels = slots(levels),
-              .visible = slots(visible)};
+              .visible = slots(visible),
+              .fractions = {fractions.data() + instance.firstSlot, count}};
     if (instance.steered()) s.controls = {scene->controls.data() + instance.firstControl, asset.parts.size()};
     if (desc.reference) {
         const Impl& reference = *desc.reference->impl_;
@@ -108,7 +114,11 @@ void Selection::Impl::decideWhole(const Subject& s) {
     const float keep = 1 - desc.hysteresis, inner = desc.wholeBeyond, outer = inner / (keep * keep);
     const bool was = s.own.whole;
     s.own.whole = s.own.inBelt = false;
-    if (s.controls.empty() && s.referenceOwn) {
+    // What was out of sight takes its levels at once.
+    s.own.morphs = s.own.morphs && desc.morph && s.own.kind == InstanceKind::mixed;
+    if (desc.morph) {
+        // Nothing is whole.
+    } else if (s.controls.empty() && s.referenceOwn) {
         s.own.whole = s.referenceOwn->whole;
         s.own.inBelt = s.referenceOwn->inBelt;
     } else if (s.controls.empty() && !desc.view.orthographic) {
@@ -156,18 +166,27 @@ void Selection::Impl::cull(const Subject& s) {
 
 // Levels ------------------------------------------------------------------------------------------------------------
 
+/// What a patch has in the reference; where it is culled there, what it would have.
+uint32_t Selection::Impl::levelThere(const Subject& s, uint32_t patch, uint32_t hint) const {
+    const uint32_t slot = s.instance.firstSlot + patch;
+    if (s.referenceOwn->kind == InstanceKind::mixed && s.reference->visible[slot]) return s.reference->levels[slot];
+    const LevelTest test = s.patchTest(s.reference->policy, patch);
+    return s.controlled(patch, test.coarsest(s.reference->policy.tight, hint));
+}
+
 /// No coarser than the reference allows.
 uint32_t Selection::Impl::withReference(const Subject& s, uint32_t patch, uint32_t level) const {
     if (!s.reference) return level;
+    return std::min(level, levelThere(s, patch, level) + desc.coarserThanReference);
+}
+
+float Selection::Impl::continuousWithReference(const Subject& s, uint32_t patch, float lambda) const {
+    if (!s.reference) return lambda;
     const uint32_t slot = s.instance.firstSlot + patch;
-    uint32_t there = 0;
-    if (s.referenceOwn->kind == InstanceKind::mixed && s.reference->visible[slot]) {
-        there = s.reference->levels[slot];
-    } else {
-        const LevelTest test = s.patchTest(s.reference->policy, patch);
-        there = s.controlled(patch, test.coarsest(s.reference->policy.tight, level));
-    }
-    return std::min(level, there + desc.coarserThanReference);
+    const bool morphs = s.referenceOwn->kind == InstanceKind::mixed && s.referenceOwn->morphs;
+    const float there = morphs ? float(s.reference->levels[slot]) + s.reference->fractions[slot]
+                               : float(levelThere(s, patch, uint32_t(lambda)));
+    return std::min(lambda, there + float(desc.coarserThanReference));
 }
 
 void Selection::Impl::chooseWhole(const Subject& s, ChunkCount& count) {
@@ -205,11 +224,42 @@ void Selection::Impl::chooseMixed(const Subject& s, ChunkCount& count) {
     count.stats.changedPatches += changed;
 }
 
+/// The continuous level of a patch; one that glides comes nearer to it, by no more than the rate.
+float Selection::Impl::nextLambda(const Subject& s, uint32_t patch, bool glides) const {
+    float lambda = continuousLevel(s.patchTest(policy, patch));
+    if (!s.controls.empty()) lambda = steered(s.controls[s.patches[patch].part], lambda, s.asset.levelCount());
+    lambda = continuousWithReference(s, patch, lambda);
+    const float before = s.lambda(patch);
+    return glides ? std::clamp(lambda, before - desc.morphRate, before + desc.morphRate) : lambda;
+}
+
+void Selection::Impl::chooseContinuous(const Subject& s, ChunkCount& count) {
+    const MeshEye eye = desc.cullBackfaces ? meshEye(desc.view, s.instance.placement.toWorld) : MeshEye{};
+    const bool glides = s.own.morphs;
+    s.own.morphs = true;
+    count.stats.consideredPatches += uint32_t(s.patches.size());
+    for (uint32_t p = 0; p < s.patches.size(); ++p) {
+        const uint8_t before = s.levels[p];
+        // Of what is culled too: the boundaries that it shares with what is seen go by it.
+        const float lambda = nextLambda(s, p, glides);
+        s.levels[p] = s.wanted[p] = uint8_t(lambda);
+        s.fractions[p] = std::min(lambda - float(s.levels[p]), kMaxFraction);
+        const bool inCone = lambda <= float(s.patches[p].coneLevel);
+        if (s.visible[p] && inCone && turnedAway(eye, s.patches[p])) s.visible[p] = 0;
+        count.stats.culledPatches += !s.visible[p];
+        count.stats.changedPatches += before != s.levels[p];
+    }
+}
+
 void Selection::Impl::choose(uint32_t id, ChunkCount& count) {
     const Subject s = subject(id);
     // A culled one too: it is what references and the way back go by.
     if (s.own.whole) chooseWhole(s, count);
-    if (s.own.kind == InstanceKind::mixed) chooseMixed(s, count);
+    if (s.own.kind == InstanceKind::mixed && desc.morph) {
+        chooseContinuous(s, count);
+    } else if (s.own.kind == InstanceKind::mixed) {
+        chooseMixed(s, count);
+    }
     count.stats.visibleInstances += s.own.kind != InstanceKind::culled;
 }
 
@@ -244,7 +294,7 @@ void Selection::update(const Scene& scene, const SelectionDesc& desc) {
     d.stats.pixels = d.policy.loose.pixels;
 }
 
-void Selection::set(const Scene& scene, uint32_t id, Levels levels) {
+void Selection::set(const Scene& scene, uint32_t id, Levels levels, std::span<const float> own) {
     assert(impl_ && scene.hasInstance(id));
     Impl& d = *impl_;
     d.scene = &scene.impl();
@@ -256,6 +306,9 @@ void Selection::set(const Scene& scene, uint32_t id, Levels levels) {
     s.own.kind = s.instance.visible ? InstanceKind::mixed : InstanceKind::culled;
     s.own.whole = false;
     s.own.fresh = false;
+    s.own.morphs = !own.empty();
+    assert(own.empty() || own.size() == levels.size());
+    std::copy(own.begin(), own.end(), s.fractions.begin());
     std::copy(levels.begin(), levels.end(), s.levels.begin());
     std::copy(levels.begin(), levels.end(), s.wanted.begin());
     for (uint32_t p = 0; p < levels.size(); ++p) s.visible[p] = !s.hidden(p);
@@ -284,6 +337,14 @@ std::span<const uint8_t> Selection::visible(uint32_t id) const {
     assert(kind(id) == InstanceKind::mixed);
     const SceneInstance& instance = impl_->scene->at(id);
     return {impl_->visible.data() + instance.firstSlot, impl_->scene->assetAt(instance.asset).desc.asset->patchCount()};
+}
+
+std::span<const float> Selection::fractions(uint32_t id) const {
+    assert(kind(id) == InstanceKind::mixed);
+    if (!impl_->instances[id].morphs) return {};
+    const SceneInstance& instance = impl_->scene->at(id);
+    return {impl_->fractions.data() + instance.firstSlot,
+            impl_->scene->assetAt(instance.asset).desc.asset->patchCount()};
 }
 
 const SelectionStats& Selection::stats() const {

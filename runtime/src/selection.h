@@ -15,6 +15,7 @@ struct ViewInstance {
     bool fresh = true;             ///< its patches have no level yet
     uint8_t wholeState = kNoLevel; ///< kept while whole
     bool inBelt = false;           ///< mixed, but near where it would be whole
+    bool morphs = false;           ///< has fractions, since it came into sight
 };
 
 /// What a pass over some instances counted; cache lines of their own for threads.
@@ -31,6 +32,7 @@ struct Selection::Impl : Allocated<Selection::Impl> {
     FixedArray<uint8_t> wanted;  ///< by slot: the policy's own level, kNoLevel before the first
     FixedArray<uint8_t> levels;  ///< by slot: after controls, reference and culling
     FixedArray<uint8_t> visible; ///< by slot
+    FixedArray<float> fractions; ///< by slot: of instances that morph
     FixedArray<ChunkCount> chunks;
     SelectionStats stats;
 
@@ -50,6 +52,7 @@ struct Selection::Impl : Allocated<Selection::Impl> {
         std::span<const PatchBounds> patches;
         std::span<const PartControl> controls; ///< empty: not steered
         std::span<uint8_t> wanted, levels, visible;
+        std::span<float> fractions;
         // Of the reference.
         const Impl* reference = nullptr;
         const ViewInstance* referenceOwn = nullptr;
@@ -57,6 +60,7 @@ struct Selection::Impl : Allocated<Selection::Impl> {
         LevelTest wholeTest(const LevelPolicy& by, const Scene::Impl& in) const;
         LevelTest patchTest(const LevelPolicy& by, uint32_t patch) const;
         uint32_t controlled(uint32_t patch, uint32_t level) const;
+        float lambda(uint32_t patch) const { return float(levels[patch]) + fractions[patch]; }
         bool hidden(uint32_t patch) const { return !controls.empty() && controls[patches[patch].part].hidden; }
     };
     Subject subject(uint32_t id);
@@ -65,9 +69,13 @@ struct Selection::Impl : Allocated<Selection::Impl> {
     void enter(uint32_t id);
     void decideWhole(const Subject& s);
     void cull(const Subject& s);
+    uint32_t levelThere(const Subject& s, uint32_t patch, uint32_t hint) const;
     uint32_t withReference(const Subject& s, uint32_t patch, uint32_t level) const;
+    float continuousWithReference(const Subject& s, uint32_t patch, float lambda) const;
+    float nextLambda(const Subject& s, uint32_t patch, bool glides) const;
     void chooseWhole(const Subject& s, ChunkCount& count);
     void chooseMixed(const Subject& s, ChunkCount& count);
+    void chooseContinuous(const Subject& s, ChunkCount& count);
     void choose(uint32_t id, ChunkCount& count);
 
     // Budgets (budget.cpp).

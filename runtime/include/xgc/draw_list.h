@@ -88,6 +88,10 @@ public:
     InstanceKind kind(uint32_t instance) const;
     uint32_t wholeState(uint32_t instance) const;
     Levels levels(uint32_t instance) const;
+    /// Of one of kind mixed, beside its levels: the fractions at which it is drawn, for groupLambdas of morph.h; empty
+    /// where it does not morph. A patch whose level lags behind the selected one stands as near to that as its own
+    /// level goes: at fraction 0, or at kMaxFraction.
+    std::span<const float> fractions(uint32_t instance) const;
 
 private:
     struct Impl;

@@ -59,6 +59,13 @@ struct SelectionDesc {
     float wholeBeyond = 6;
 
     JobSystem jobs;
+
+    /// Levels that change continuously (morph.h): each patch also gets a fraction of the way to its next level. Without
+    /// hysteresis and budget (asserted). No instance is whole; culled patches keep the levels that they would have in
+    /// sight, and are not drawn.
+    bool morph = false;
+    /// Most levels by which a patch may change in an update. What comes into sight takes its levels at once.
+    float morphRate = 0.125f;
 };
 
 struct SelectionStats {
@@ -100,16 +107,25 @@ public:
     ///
     /// Promise of errorPixels: no drawn patch lies farther than stats().pixels on screen from the input's surface,
     /// divided by its part's importance, but where a PartControl or a reference decides.
+    ///
+    /// With `morph`, a patch at level l and fraction f has errors of (1 - f) E(l) + f E(l + 1) within the pixels: where
+    /// f is 0 that is the promise above; between two levels the drawn surface lies between theirs, and its error is
+    /// measured, not proved, to follow. Errors that rise by less than an eighth from level to level are taken to rise
+    /// by that, so a change of the distance to the patch's bounds by one part in n an update changes its level by no
+    /// more than 9 / n: under 1/72 an update `morphRate`'s default never binds. Faster views lag behind, and what they
+    /// near is coarser than asked for until it has caught up. Distances take a division and a square root here.
     void update(const Scene& scene, const SelectionDesc& desc);
-    /// The host's own choice for an instance, in place of a policy's: `levels` of all its patches. Until the next
-    /// update.
-    void set(const Scene& scene, uint32_t instance, Levels levels);
+    /// The host's own choice for an instance, in place of a policy's: `levels` of all its patches, and their fractions
+    /// where it is to morph. Until the next update.
+    void set(const Scene& scene, uint32_t instance, Levels levels, std::span<const float> fractions = {});
 
     InstanceKind kind(uint32_t instance) const;
     uint32_t wholeState(uint32_t instance) const;
     /// Of an instance of kind mixed: a level each patch, and 1 where it is drawn.
     Levels levels(uint32_t instance) const;
     std::span<const uint8_t> visible(uint32_t instance) const;
+    /// Likewise, a fraction each patch, 0 to kMaxFraction of morph.h; empty where the instance does not morph.
+    std::span<const float> fractions(uint32_t instance) const;
     const SelectionStats& stats() const;
 
     struct Impl; ///< private
