@@ -116,7 +116,7 @@ public:
     std::vector<Posed> posed() const {
         std::vector<Posed> out;
         for (uint32_t i = 0; i < scene_->instances.size(); ++i) {
-            Posed one{&scene_->asset.view, scene_->instances[i], std::vector<uint8_t>(scene_->asset.view.patchCount())};
+            Posed one{&scene_->grey, scene_->instances[i], std::vector<uint8_t>(scene_->asset.view.patchCount())};
             if (list_.kind(i) == InstanceKind::whole) {
                 world_.wholeLevels(world_.assetOf(i), list_.wholeState(i), one.levels);
             } else {
@@ -150,7 +150,7 @@ private:
 std::vector<Posed> inFull(const ViewScene& scene) {
     std::vector<Posed> out;
     const std::vector<uint8_t> finest(scene.asset.view.patchCount(), 0);
-    for (const Placement& placement : scene.instances) out.push_back({&scene.asset.view, placement, finest});
+    for (const Placement& placement : scene.instances) out.push_back({&scene.grey, placement, finest});
     return out;
 }
 
@@ -209,7 +209,7 @@ private:
     }
 
     std::string takePictures() {
-        const AssetView* assets[] = {&scene_.asset.view};
+        const AssetView* assets[] = {&scene_.grey};
         Status status = photographer_->begin(assets, uint32_t(scene_.instances.size()));
         size_t picture = 0;
         for (size_t f = 0; f < frames_.size() && status.ok(); ++f) {
@@ -235,14 +235,14 @@ private:
         std::vector<std::unique_ptr<CutAsset>> assets;
         std::vector<Posed> scene;
         for (size_t i = 0; i < count; ++i) {
-            assets.push_back(std::make_unique<CutAsset>(scene_.asset.view, cuts_[first + i].indices));
+            assets.push_back(std::make_unique<CutAsset>(scene_.grey, cuts_[first + i].indices));
             scene.push_back({&assets.back()->view, scene_.instances[i], {0}});
         }
         std::vector<const AssetView*> views;
         for (const auto& asset : assets) views.push_back(&asset->view);
         const Status begun = photographer_->begin(views, 1);
         const Status taken = begun.ok() ? photographer_->take(scene, camera, image) : begun;
-        const AssetView* own[] = {&scene_.asset.view};
+        const AssetView* own[] = {&scene_.grey};
         const Status restored = photographer_->begin(own, uint32_t(count));
         return taken.ok() ? restored : taken;
     }

@@ -99,6 +99,14 @@ bake::Status make(const Source& source, ViewScene& scene) {
     const bake::Status laidOut =
         layOut(subject, subject.parts, hierarchy, measureErrors(subject, hierarchy), scene.asset);
     if (!laidOut.ok()) return laidOut;
+    format::MaterialRecord grey = scene.asset.view.materials[0];
+    std::fill_n(grey.baseColor, 4, 0.8f);
+    std::fill_n(grey.emissive, 3, 0.0f);
+    grey.metallic = 0;
+    grey.roughness = 0.7f;
+    scene.greyMaterials.assign(scene.asset.view.materials.size(), grey);
+    scene.grey = scene.asset.view;
+    scene.grey.materials = scene.greyMaterials;
     scene.instances = {Placement{}};
     scene.nearest = 0.004f * scene.asset.view.record->sphereRadius;
     return {};

@@ -20,6 +20,8 @@ struct Pose {
 struct ViewScene {
     std::string name;
     OpenAsset asset;
+    AssetView grey; ///< the asset with all materials alike: pictures compare shapes, normals and vertex colours
+    std::vector<format::MaterialRecord> greyMaterials;
     std::vector<Placement> instances;
     std::vector<Pose> flight;
     std::vector<bool> close; ///< a frame each: nearer than half the asset's radius to its bounds, or in them
