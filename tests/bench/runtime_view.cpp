@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -39,6 +40,7 @@ constexpr const char* kMethodNames[] = {"mesh", "part", "patch"};
 struct FrameFigures {
     uint64_t triangles[kMethodCount] = {};
     uint64_t uploadBytes[kMethodCount] = {};
+    double microseconds = 0; ///< of `patch`: selection, index building and draw list
     std::optional<ImageDifference> picture[kMethodCount];
     // The other program's, by threshold; none without it.
     std::vector<uint64_t> cutTriangles, cutBytes;
@@ -94,6 +96,7 @@ public:
     void frame(const Pose& pose, FrameFigures& out) {
         const AssetView& asset = scene_->asset.view;
         const View view = viewOf(*scene_, pose);
+        const auto start = std::chrono::steady_clock::now();
         if (method_ == kPatch) {
             SelectionDesc desc;
             desc.view = view;
@@ -109,6 +112,8 @@ public:
         cache_.beginFrame(staging_);
         list_.update(world_, selection_, cache_);
         cache_.endFrame();
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+        if (method_ == kPatch) out.microseconds = 1e6 * took.count();
         out.triangles[method_] = list_.stats().triangles;
         out.uploadBytes[method_] = cache_.stats().uploadBytes;
     }
@@ -310,24 +315,32 @@ void print(const ViewScene& scene, const std::vector<FrameFigures>& frames) {
     fmt::print("{:<11}{:<7}{:>12.0f}{:>9.3f}{:>9.3f}{:>12.0f}{:>8.2f}{:>9.5f}\n", scene.name, "cut", all.cut / n,
                all.cut / all.triangles[kMesh], close.cut > 0 ? close.cut / close.triangles[kMesh] : 0, all.cutBytes / n,
                mean(all.cutPsnr), mean(all.cutSsim));
-    fmt::print("{:<11}patch over cut: {:.3f} at one pixel each, {:.3f} (median of {} pictures) at equal PSNR\n",
-               scene.name, all.triangles[kPatch] / all.cut, all.atEqual.empty() ? 0 : median(all.atEqual),
-               all.atEqual.size());
+    std::vector<double> own, cut;
+    for (const FrameFigures& frame : frames) {
+        own.push_back(frame.microseconds);
+        cut.push_back(frame.cutMicroseconds[0]);
+    }
+    fmt::print(
+        "{:<11}patch over cut: {:.3f} at one pixel each, {:.3f} (median of {} pictures) at equal PSNR; {:.0f} and "
+        "{:.0f} microseconds (medians)\n",
+        scene.name, all.triangles[kPatch] / all.cut, all.atEqual.empty() ? 0 : median(all.atEqual), all.atEqual.size(),
+        median(own), median(cut));
 }
 
 void write(const Flags& flags, const ViewScene& scene, const std::vector<FrameFigures>& frames) {
     Csv csv(flags, "view-" + scene.name,
-            "frame,close,mesh,part,patch,cut,mesh_bytes,part_bytes,patch_bytes,cut_bytes,cut_us,mesh_psnr,part_psnr,"
+            "frame,close,mesh,part,patch,cut,mesh_bytes,part_bytes,patch_bytes,cut_bytes,patch_us,cut_us,mesh_psnr,"
+            "part_psnr,"
             "patch_psnr,cut_psnr,mesh_ssim,part_ssim,patch_ssim,cut_ssim,cut_at_equal_psnr");
     const auto number = [](const auto& values, const char* form = "{}") {
         return values.empty() ? std::string() : fmt::format(fmt::runtime(form), values.front());
     };
     for (size_t f = 0; f < frames.size(); ++f) {
         const FrameFigures& r = frames[f];
-        std::string row = fmt::format("{},{},{},{},{},{},{},{},{},{},{}", f, int(scene.close[f]), r.triangles[kMesh],
-                                      r.triangles[kPart], r.triangles[kPatch], number(r.cutTriangles),
-                                      r.uploadBytes[kMesh], r.uploadBytes[kPart], r.uploadBytes[kPatch],
-                                      number(r.cutBytes), number(r.cutMicroseconds, "{:.1f}"));
+        std::string row = fmt::format(
+            "{},{},{},{},{},{},{},{},{},{},{:.1f},{}", f, int(scene.close[f]), r.triangles[kMesh], r.triangles[kPart],
+            r.triangles[kPatch], number(r.cutTriangles), r.uploadBytes[kMesh], r.uploadBytes[kPart],
+            r.uploadBytes[kPatch], number(r.cutBytes), r.microseconds, number(r.cutMicroseconds, "{:.1f}"));
         for (const bool similarity : {false, true}) {
             const auto of = [&](const ImageDifference& d) { return similarity ? d.ssim : d.psnr; };
             for (const auto& picture : r.picture) row += picture ? fmt::format(",{:.6g}", of(*picture)) : ",";
