@@ -30,8 +30,8 @@ static_assert(sizeof(MorphRow) == 8);
 
 /// Largest fraction of a lambda: a float holds any level beside it.
 inline constexpr float kMaxFraction = 1 - 1.0f / 16384;
-/// Most rows that a vertex is blended of; baked models need three. Where as many nested domains as that are on their way
-/// at once, the chain ends at the last: still without a crack.
+/// Most rows that a vertex is blended of; baked models need three. Where as many nested domains as that are on their
+/// way at once, the chain ends at the last: still without a crack.
 inline constexpr uint32_t kMorphRows = 4;
 
 /// Groups of an asset: its domains, then the interiors of its patches.
