@@ -31,8 +31,8 @@ namespace {
 constexpr uint32_t kWidth = 1920, kHeight = 1080;
 constexpr float kFovY = 1.0f;
 constexpr uint32_t kPictureEvery = 8;
-constexpr float kThresholds[] = {1,     0.7f,   0.5f,    0.35f,
-                                 0.25f, 0.125f, 0.0625f, 0.03f}; ///< of the other program, the first its own
+/// Of the other program; the first is its own.
+constexpr float kThresholds[] = {1, 0.125f, 0.25f, 0.5f, 0.7f, 1.4f, 2, 2.8f, 4};
 
 enum Method : uint32_t { kMesh, kPart, kPatch, kMethodCount };
 constexpr const char* kMethodNames[] = {"mesh", "part", "patch"};
