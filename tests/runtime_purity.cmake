@@ -26,7 +26,7 @@ foreach(file ${files})
   file(STRINGS ${file} includes REGEX "^ *# *include")
   foreach(include ${includes})
     if(include MATCHES "${foreign}" OR
-       (include MATCHES "<[^>]*[./][^>]*>" AND NOT include MATCHES "<((xgc|glm)/|emmintrin.h>)"))
+       (include MATCHES "<[^>]*[./][^>]*>" AND NOT include MATCHES "<((xgc|glm)/|emmintrin.h>|std(def|int).h>)"))
       message(FATAL_ERROR "${file}: ${include}: the runtime core includes the standard library, GLM and the compiler's SSE2 only")
     endif()
   endforeach()

@@ -225,6 +225,12 @@ void IndexCache::removeAsset(uint32_t id) {
     c.assets[id] = {};
 }
 
+uint32_t IndexCache::heldRanges(uint32_t asset) const {
+    assert(impl_);
+    (void)impl_->view(asset);
+    return impl_->assets[asset].heldRanges;
+}
+
 // Ranges ------------------------------------------------------------------------------------------------------------
 
 /// Takes a range that nobody holds out of its list.
@@ -285,18 +291,22 @@ uint32_t IndexCache::Impl::evictOldest() {
     return drop(id);
 }
 
+bool IndexCache::isHeld(uint32_t range) const {
+    return impl_ && range < impl_->ranges.size() && impl_->ranges[range].holders > 0;
+}
+
 void IndexCache::hold(uint32_t range) {
-    assert(impl_ && range < impl_->ranges.size() && impl_->ranges[range].holders > 0 && "no range that is held");
+    assert(isHeld(range) && "no range that is held");
     impl_->hold(range);
 }
 
 void IndexCache::release(uint32_t range) {
-    assert(impl_ && range < impl_->ranges.size() && impl_->ranges[range].holders > 0 && "no range that is held");
+    assert(isHeld(range) && "no range that is held");
     impl_->release(range);
 }
 
 IndexRange IndexCache::at(uint32_t range) const {
-    assert(impl_ && range < impl_->ranges.size() && impl_->ranges[range].holders > 0 && "no range that is held");
+    assert(isHeld(range) && "no range that is held");
     const Range& r = impl_->ranges[range];
     const uint32_t words = r.run == kNone ? 0 : impl_->arena.offset(r.run);
     return {words * (kWord / r.indexBytes), r.indexCount, r.indexBytes, r.vertexOffset};
@@ -508,6 +518,10 @@ void IndexCache::endFrame() {
     assert(impl_ && impl_->inFrame && "beginFrame is missing");
     impl_->inFrame = false;
     impl_->staging = {};
+}
+
+bool IndexCache::inFrame() const {
+    return impl_ && impl_->inFrame;
 }
 
 std::span<const CopyRange> IndexCache::copies() const {

@@ -1,10 +1,13 @@
-# cmake -DREADME=README.md -DPROGRAM=use_runtime.cpp -P readme_code.cmake
-# Every line of the README's C++ stands in a program that is compiled and run.
+# cmake -DREADME=README.md -DPROGRAM=use_runtime.cpp [-DLANGUAGE=c] -P readme_code.cmake
+# Every line of the README's first example in C++ (or C) stands in a program that is compiled and run.
 file(READ ${README} readme)
 file(READ ${PROGRAM} program)
-string(REGEX MATCH "```cpp\n([^`]*)```" found "${readme}")
+if(NOT LANGUAGE)
+  set(LANGUAGE cpp)
+endif()
+string(REGEX MATCH "```${LANGUAGE}\n([^`]*)```" found "${readme}")
 if(NOT found)
-  message(FATAL_ERROR "${README} has no C++ example")
+  message(FATAL_ERROR "${README} has no example in ${LANGUAGE}")
 endif()
 string(REPLACE ";" "\\;" code "${CMAKE_MATCH_1}")
 string(REPLACE "\n" ";" lines "${code}")

@@ -1,4 +1,4 @@
-# The installed tree and its CMake package: find_package(xgc CONFIG [COMPONENTS runtime load vulkan bake]). Each component
+# The installed tree and its CMake package: find_package(xgc CONFIG [COMPONENTS runtime c load vulkan bake]). Each component
 # has an export set of its own, so that a user of the runtime core needs GLM and nothing else.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/xgc)
@@ -11,6 +11,9 @@ endfunction()
 
 xgc_install_component(runtime)
 install(DIRECTORY runtime/include/xgc DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+if(TARGET xgc_c)
+  xgc_install_component(c)
+endif()
 if(TARGET xgc_load)
   xgc_install_component(load)
   install(DIRECTORY runtime/load/include/xgc DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

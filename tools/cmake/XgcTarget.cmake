@@ -1,8 +1,12 @@
 # Compiler settings that all targets of the project share. Floating-point contraction is off everywhere: the same
-# input gives the same bytes with and without FMA.
+# input gives the same bytes with and without FMA. xgc_target(NAME [PRIVATE]): PRIVATE where users need no C++20.
 function(xgc_target target)
-  target_compile_features(${target} PUBLIC cxx_std_20)
-  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+  if(ARGV1 STREQUAL "PRIVATE")
+    target_compile_features(${target} PRIVATE cxx_std_20)
+  else()
+    target_compile_features(${target} PUBLIC cxx_std_20)
+  endif()
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF C_STANDARD 11 C_EXTENSIONS OFF)
   target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wconversion
                                            -Wno-sign-conversion)
   if(XGC_WARNINGS_AS_ERRORS)

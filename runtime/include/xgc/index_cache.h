@@ -83,11 +83,14 @@ public:
     Status addAsset(uint32_t id, const AssetView& asset);
     /// All its ranges must be released. Their memory is reused framesInFlight frames later, the id at once.
     void removeAsset(uint32_t id);
+    /// Ranges of an asset that are held.
+    uint32_t heldRanges(uint32_t asset) const;
 
     /// Starts a frame. New indices are written to `staging` (for instance mapped memory, aligned to 4; never read),
     /// which must stay valid until the renderer has copied from it. Its size is the frame's upload cap.
     void beginFrame(std::span<std::byte> staging);
     void endFrame();
+    bool inFrame() const;
 
     /// Holds the range of a patch in a state, built where the cache has none; in a frame. Each successful acquire is
     /// undone by one release. A patch that draws nothing has a range of no indices.
@@ -106,6 +109,8 @@ public:
     void hold(uint32_t range);
     void release(uint32_t range);
 
+    /// True where the number is that of a range that somebody holds.
+    bool isHeld(uint32_t range) const;
     /// Of a range that is held.
     IndexRange at(uint32_t range) const;
 
