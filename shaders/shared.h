@@ -28,6 +28,9 @@ XGC_CONST uint kModeWire = 3;
 
 XGC_CONST uint kPartColorCount = 12;
 
+XGC_CONST uint kNoLambdas = 0xffffffffu;
+XGC_CONST uint kMorphRows = 4; ///< xgc::kMorphRows
+
 /// A view: a camera and how to colour what it sees.
 struct ViewRecord {
     mat4 worldToClip;
@@ -49,6 +52,8 @@ struct InstanceRecord {
     Address colors;    ///< linear RGBA
     uint colorFormat;  ///< xgc::format::StreamFormat
     uint reserved;
+    Address morphs;    ///< xgc::MorphRow each row
+    uint reserved1, reserved2;
 };
 
 /// A draw: what its triangles look like, and where its instances and indices lie.
@@ -81,14 +86,16 @@ struct PushConstants {
     Address instanceIds; ///< a uint each
     uint firstDraw; ///< of the batch: gl_DrawID counts from it
     uint reserved;
+    Address lambdaOffsets; ///< a uint each instance: of its lambdas, or kNoLambdas; 0: nothing morphs
+    Address lambdas;       ///< a float a group
 };
 
 #ifdef __cplusplus
 static_assert(sizeof(ViewRecord) == 160);
-static_assert(sizeof(InstanceRecord) == 80);
+static_assert(sizeof(InstanceRecord) == 96);
 static_assert(sizeof(DrawRecord) == 32);
 static_assert(sizeof(MaterialRecord) == 48);
-static_assert(sizeof(PushConstants) == 56);
+static_assert(sizeof(PushConstants) == 72);
 } // namespace xgc::shader
 #endif
 

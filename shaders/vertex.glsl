@@ -27,16 +27,74 @@ vec3 turnNormal(InstanceRecord instance, vec3 n) {
     return vec3(dot(cross(b, c), n), dot(cross(c, a), n), dot(cross(a, b), n));
 }
 
+vec3 fetchPosition(InstanceRecord instance, uint row) {
+    Floats f = Floats(instance.positions);
+    return vec3(f.at[3 * row], f.at[3 * row + 1], f.at[3 * row + 2]);
+}
+
+// Zero where the asset has none.
+vec3 fetchNormal(InstanceRecord instance, uint row) {
+    return isNull(instance.normals) ? vec3(0) : decodeOctahedral(Words(instance.normals).at[row]);
+}
+
+// A vertex in mesh space.
+struct Vertex {
+    vec3 position;
+    vec3 normal;
+    vec4 color;
+};
+
+void addWeighted(inout Vertex sum, float weight, Vertex v) {
+    sum.position += weight * v.position;
+    sum.normal += weight * v.normal;
+    sum.color += weight * v.color;
+}
+
+Vertex fetchVertex(InstanceRecord instance, uint row) {
+    return Vertex(fetchPosition(instance, row), fetchNormal(instance, row), fetchColor(instance, row));
+}
+
+// A geomorph, as xgc::morph does it on the CPU (xgc/morph.h). All patches that draw a row compute this from the same
+// numbers by the same code, so they put it at the same place. `firstLambda`: of the instance's groups.
+Vertex fetchMorphed(InstanceRecord instance, uint firstLambda, uint row) {
+    Words rows = Words(instance.morphs);
+    Floats lambdas = Floats(push.lambdas);
+    Vertex sum = Vertex(vec3(0), vec3(0), vec4(0));
+    float rest = 1.0;
+    uint count = 1;
+    for (;;) {
+        const uint groupAndLevel = rows.at[2 * row + 1];
+        const float lambda = lambdas.at[firstLambda + (groupAndLevel & 0xffffff)];
+        const float share = clamp(lambda - (float(groupAndLevel >> 24) - 1.0), 0.0, 1.0);
+        if (share <= 0.0 || (share < 1.0 && count == kMorphRows)) break;
+        if (share < 1.0) {
+            addWeighted(sum, rest * (1.0 - share), fetchVertex(instance, row));
+            rest *= share;
+            ++count;
+        }
+        row = rows.at[2 * row]; // its target
+    }
+    if (count == 1) return fetchVertex(instance, row);
+    addWeighted(sum, rest, fetchVertex(instance, row));
+    const float length2 = dot(sum.normal, sum.normal);
+    if (length2 > 0.0) sum.normal *= inversesqrt(length2);
+    return sum;
+}
+
+Vertex vertexOf(InstanceRecord instance, uint id, uint row) {
+    if (isNull(push.lambdaOffsets)) return fetchVertex(instance, row);
+    const uint firstLambda = Words(push.lambdaOffsets).at[id];
+    return firstLambda == kNoLambdas ? fetchVertex(instance, row) : fetchMorphed(instance, firstLambda, row);
+}
+
 void shadeVertex(uint row, uint draw, uint instanceInDraw) {
     const uint id = Words(push.instanceIds).at[Draws(push.draws).at[draw].firstInstance + instanceInDraw];
     const InstanceRecord instance = Instances(push.instances).at[id];
-    Floats f = Floats(instance.positions);
-    const vec4 local = vec4(f.at[3 * row], f.at[3 * row + 1], f.at[3 * row + 2], 1);
+    const Vertex v = vertexOf(instance, id, row);
+    const vec4 local = vec4(v.position, 1);
     outPosition = vec3(dot(instance.toWorld[0], local), dot(instance.toWorld[1], local), dot(instance.toWorld[2], local));
-    outNormal = isNull(instance.normals)
-                    ? vec3(0)
-                    : turnNormal(instance, decodeOctahedral(Words(instance.normals).at[row]));
-    outColor = fetchColor(instance, row);
+    outNormal = turnNormal(instance, v.normal);
+    outColor = v.color;
     outDraw = draw;
     gl_Position = Views(push.view).at.worldToClip * vec4(outPosition, 1);
 }

@@ -50,10 +50,12 @@ bake::Status AssetGrid::load(const std::vector<std::filesystem::path>& files, ui
     return {};
 }
 
-vulkan::RendererConfig AssetGrid::rendererConfig() const {
+vulkan::RendererConfig AssetGrid::rendererConfig(bool morph) const {
     std::vector<const AssetView*> views;
     for (const auto& asset : assets_) views.push_back(&asset->view);
-    return vulkan::configFor(views, instancesOfEach_);
+    vulkan::RendererConfig base;
+    base.morphGroupCapacity = morph ? 1 : 0; // configFor grows it
+    return vulkan::configFor(views, instancesOfEach_, base);
 }
 
 Status AssetGrid::addTo(vulkan::Renderer& renderer) {

@@ -28,7 +28,7 @@ public:
     bake::Status load(const std::vector<std::filesystem::path>& files, uint32_t instancesOfEach);
 
     /// Capacities that hold it all.
-    vulkan::RendererConfig rendererConfig() const;
+    vulkan::RendererConfig rendererConfig(bool morph) const;
     /// Hands assets and instances to the renderer, which the scene must outlive.
     Status addTo(vulkan::Renderer& renderer);
 

@@ -37,6 +37,7 @@ struct Options {
     std::filesystem::path record; ///< empty: no flight is written
     uint32_t width = 1280, height = 720;
     uint32_t instances = 1;
+    bool morph = false;
 };
 
 // Destroyed from the last up: the target waits for its frames before anything that they use goes.
@@ -60,7 +61,7 @@ Status createDevice(App& app) {
     Status status = app.device.create();
     if (status.ok()) status = app.context.create(app.device.contextDesc());
     if (!status.ok()) return status;
-    const vulkan::RendererConfig config = app.scene.rendererConfig();
+    const vulkan::RendererConfig config = app.scene.rendererConfig(app.options.morph);
     vulkan::OffscreenDesc target;
     target.size = {app.options.width, app.options.height};
     target.framesInFlight = config.framesInFlight;
@@ -88,7 +89,8 @@ SelectionDesc selectionFor(const App& app, const vulkan::Camera& camera) {
     desc.view.nearest = camera.nearPlane;
     desc.frustum = makeFrustum(camera.worldToClip());
     desc.pixels = app.options.errorPixels;
-    desc.hysteresis = kHysteresis;
+    desc.morph = app.options.morph;
+    desc.hysteresis = desc.morph ? 0 : kHysteresis;
     if (!app.options.bands.empty()) {
         desc.policy = Policy::distanceBands;
         desc.bands = app.options.bands;
@@ -194,9 +196,10 @@ void addOptions(CLI::App& cli, Options& options) {
     cli.add_option("--bands", options.bands, "Distances, in radii of the asset, at which levels 1, 2, ... begin")
         ->delimiter(',')
         ->excludes(error);
-    cli.add_option("--budget", options.budget,
-                   "At most so many triangles a frame, at as few pixels of error as that takes")
-        ->check(CLI::Range(1u, 1u << 30));
+    CLI::Option* budget = cli.add_option("--budget", options.budget,
+                                         "At most so many triangles a frame, at as few pixels of error as that takes")
+                              ->check(CLI::Range(1u, 1u << 30));
+    cli.add_flag("--morph", options.morph, "Levels change continuously, without a pop")->excludes(budget);
     cli.add_option("--mode", options.mode, "How it is coloured")
         ->check(CLI::IsMember({"shaded", "parts", "levels", "wire"}))
         ->capture_default_str();

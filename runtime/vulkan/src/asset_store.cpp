@@ -8,8 +8,8 @@ namespace xgc::vulkan {
 namespace {
 
 /// Units of kAlignment that a stream takes.
-uint64_t unitsOf(const VertexStream& stream) {
-    return (stream.bytes.size() + AssetStore::kAlignment - 1) / AssetStore::kAlignment;
+uint64_t unitsOf(std::span<const std::byte> stream) {
+    return (stream.size() + AssetStore::kAlignment - 1) / AssetStore::kAlignment;
 }
 
 std::span<const VertexStream> streamsOf(const AssetView& view) {
@@ -52,6 +52,8 @@ void noteAddress(StoredAsset& asset, const VertexStream& stream, VkDeviceAddress
 
 } // namespace
 
+static_assert(shader::kMorphRows == kMorphRows);
+
 Status AssetStore::create(const Context& context, const RendererConfig& config) {
     const VkDeviceSize units = std::max<VkDeviceSize>(config.vertexArenaBytes / kAlignment, 1);
     Status status = arena_.create(context, units * kAlignment,
@@ -66,13 +68,15 @@ Status AssetStore::create(const Context& context, const RendererConfig& config) 
     arenaRanges_.create(units);
     materialRanges_.create(config.materialCapacity);
     uploads_.create(config.assetCapacity);
+    morphs_ = config.morphGroupCapacity > 0;
     assets_.resize(config.assetCapacity);
     return {};
 }
 
 Status AssetStore::place(const AssetView& view, StoredAsset& asset) {
     uint64_t units = 0;
-    for (const VertexStream& stream : streamsOf(view)) units += unitsOf(stream);
+    for (const VertexStream& stream : streamsOf(view)) units += unitsOf(stream.bytes);
+    units += unitsOf(std::as_bytes(std::span(asset.morphRows)));
     if (!arenaRanges_.allocate(units, asset.bytes)) {
         return {StatusCode::outOfCapacity, "the vertex arena is full: raise RendererConfig::vertexArenaBytes",
                 units * kAlignment};
@@ -90,8 +94,11 @@ void AssetStore::queueStreams(StoredAsset& asset, uint32_t index) {
     for (const VertexStream& stream : streamsOf(asset.view)) {
         uploads_.add({index, stream.bytes, offset});
         noteAddress(asset, stream, arena_.address() + offset);
-        offset += unitsOf(stream) * kAlignment;
+        offset += unitsOf(stream.bytes) * kAlignment;
     }
+    if (asset.morphRows.empty()) return;
+    asset.morphs = arena_.address() + offset;
+    uploads_.add({index, std::as_bytes(std::span(asset.morphRows)), offset});
 }
 
 void AssetStore::writeMaterials(const StoredAsset& asset) {
@@ -117,6 +124,11 @@ Status AssetStore::add(const AssetView& view, AssetHandle& handle) {
     StoredAsset asset;
     asset.view = view;
     asset.generation = slot->generation + 1;
+    if (morphs_) {
+        asset.morphRows.resize(view.record->vertexCount);
+        const Status listed = morphRows(view, asset.morphRows);
+        if (!listed.ok()) return listed;
+    }
     const Status status = place(view, asset);
     if (!status.ok()) return status;
     const auto index = uint32_t(slot - assets_.begin());

@@ -5,6 +5,7 @@
 #include "shared.h"
 #include "uploader.h"
 
+#include <xgc/morph.h>
 #include <xgc/vulkan/renderer.h>
 
 #include <utility>
@@ -22,6 +23,8 @@ struct StoredAsset {
     RangeList::Range materials; ///< in the renderer's list
     std::vector<uint8_t> partColors;
     VkDeviceAddress positions = 0, normals = 0, colors = 0;
+    VkDeviceAddress morphs = 0;
+    std::vector<MorphRow> morphRows; ///< where the renderer morphs
     format::StreamFormat colorFormat{};
 
     bool alive() const { return generation % 2 == 1; }
@@ -67,6 +70,7 @@ private:
     Buffer materials_; ///< written by the host where no frame reads
     RangeList materialRanges_;
     Uploader uploads_;
+    bool morphs_ = false;
     std::vector<StoredAsset> assets_;
     std::vector<Retired> retired_; ///< oldest first
 };

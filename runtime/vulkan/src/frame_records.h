@@ -9,7 +9,7 @@ namespace xgc::vulkan {
 
 /// What the host writes anew each frame for the shaders and the indirect draws: one buffer, a part a frame in flight.
 ///
-///     [ passes | instances | view 0: draws, commands, instance ids | view 1: ... ]
+///     [ passes | instances | view 0: draws, commands, instance ids, offsets of lambdas, lambdas | view 1: ... ]
 class FrameRecords {
 public:
     struct Capacities {
@@ -18,6 +18,7 @@ public:
         uint32_t instances;
         uint32_t draws; ///< of each view
         uint32_t framesInFlight;
+        uint32_t morphGroups; ///< of each view; 0: no offsets either
     };
 
     Status create(const Context& context, const Capacities& capacities) {
@@ -27,7 +28,10 @@ public:
         views_ = instances_ + align(capacities.instances * sizeof(shader::InstanceRecord));
         commands_ = align(capacities.draws * sizeof(shader::DrawRecord));
         ids_ = commands_ + align(capacities.draws * sizeof(DrawCommand));
-        bytesPerView_ = ids_ + align(capacities.instances * sizeof(uint32_t));
+        lambdaOffsets_ = ids_ + align(capacities.instances * sizeof(uint32_t));
+        morphs_ = capacities.morphGroups > 0;
+        lambdas_ = lambdaOffsets_ + (morphs_ ? align(capacities.instances * sizeof(uint32_t)) : 0);
+        bytesPerView_ = lambdas_ + align(VkDeviceSize(capacities.morphGroups) * sizeof(float));
         bytesPerFrame_ = views_ + capacities.views * bytesPerView_;
         return buffer_.create(context, bytesPerFrame_ * frames_,
                               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
@@ -42,11 +46,18 @@ public:
     shader::DrawRecord* draws(uint32_t view) { return at<shader::DrawRecord>(ofView(view)); }
     DrawCommand* commands(uint32_t view) { return at<DrawCommand>(ofView(view) + commands_); }
     uint32_t* ids(uint32_t view) { return at<uint32_t>(ofView(view) + ids_); }
+    uint32_t* lambdaOffsets(uint32_t view) { return at<uint32_t>(ofView(view) + lambdaOffsets_); }
+    float* lambdas(uint32_t view) { return at<float>(ofView(view) + lambdas_); }
 
     VkDeviceAddress passAddress(uint32_t pass) const { return address(pass * sizeof(shader::ViewRecord)); }
     VkDeviceAddress instancesAddress() const { return address(instances_); }
     VkDeviceAddress drawsAddress(uint32_t view) const { return address(ofView(view)); }
     VkDeviceAddress idsAddress(uint32_t view) const { return address(ofView(view) + ids_); }
+    /// 0 where nothing morphs.
+    VkDeviceAddress lambdaOffsetsAddress(uint32_t view) const {
+        return morphs_ ? address(ofView(view) + lambdaOffsets_) : 0;
+    }
+    VkDeviceAddress lambdasAddress(uint32_t view) const { return morphs_ ? address(ofView(view) + lambdas_) : 0; }
     VkBuffer handle() const { return buffer_.handle(); }
     VkDeviceSize commandsOffset(uint32_t view) const { return begin_ + ofView(view) + commands_; }
 
@@ -61,9 +72,11 @@ private:
     Buffer buffer_;
     VkDeviceSize instances_ = 0, views_ = 0; ///< offsets in a frame's part
     VkDeviceSize commands_ = 0, ids_ = 0;    ///< offsets in a view's part of it
+    VkDeviceSize lambdaOffsets_ = 0, lambdas_ = 0;
     VkDeviceSize bytesPerView_ = 0, bytesPerFrame_ = 0;
     VkDeviceSize begin_ = 0;
     uint32_t frames_ = 1;
+    bool morphs_ = false;
 };
 
 } // namespace xgc::vulkan

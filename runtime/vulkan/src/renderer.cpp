@@ -15,7 +15,7 @@
 //   device-local   [ vertex arena: streams of assets, by address ]   [ index arena: ranges of the draw list ]
 //                        ^ copies                                        ^ copies
 //   mapped         [ staging: streams | indices ] x frames in flight
-//   mapped         [ views | instances | draws | commands ] x frames in flight     [ materials ]
+//   mapped         [ views | instances | draws | commands | lambdas ] x frames in flight     [ materials ]
 //
 // Frame n writes part n % framesInFlight of the mapped buffers after it waited for frame n - framesInFlight.
 
@@ -121,6 +121,7 @@ struct Renderer::Impl {
     StoredInstance* find(InstanceHandle handle);
     void showResident();
     void writeDraws(uint32_t view);
+    void writeLambdas(uint32_t view);
     void recordBatches(VkCommandBuffer cmd, uint32_t view, shader::PushConstants push, bool wire) const;
 };
 
@@ -150,9 +151,9 @@ Status Renderer::Impl::allocate() {
     }
     if (status.ok()) status = staging.create(*context, config.stagingBytes, config.framesInFlight);
     if (status.ok()) {
-        status = records.create(*context,
-                                {config.passCapacity, config.viewCapacity, config.instanceCapacity,
-                                 config.patchCapacity + DrawListConfig{}.wholeRangeCapacity, config.framesInFlight});
+        status = records.create(*context, {config.passCapacity, config.viewCapacity, config.instanceCapacity,
+                                           config.patchCapacity + DrawListConfig{}.wholeRangeCapacity,
+                                           config.framesInFlight, config.morphGroupCapacity});
     }
     if (status.ok()) status = timeline.create(*context);
     instances.resize(config.instanceCapacity);
@@ -246,6 +247,7 @@ Status Renderer::addInstance(AssetHandle handle, const Placement& placement, Ins
     record.normals = asset->normals;
     record.colors = asset->colors;
     record.colorFormat = uint32_t(asset->colorFormat);
+    record.morphs = asset->morphs;
     self.instanceEnd = std::max(self.instanceEnd, id + 1);
     out = {id, instance.generation};
     return {};
@@ -326,7 +328,7 @@ void Renderer::select(uint32_t view, const SelectionDesc& desc) {
     impl_->views[view].used = true;
 }
 
-Status Renderer::setLevels(InstanceHandle handle, Levels levels) {
+Status Renderer::setLevels(InstanceHandle handle, Levels levels, std::span<const float> fractions) {
     const StoredInstance* instance = impl_->find(handle);
     if (!instance) return {StatusCode::badArgument, "setLevels: no such instance", handle.index};
     if (!impl_->assets.uploads().done(instance->asset)) {
@@ -334,7 +336,7 @@ Status Renderer::setLevels(InstanceHandle handle, Levels levels) {
                 "the asset is still on its way: ask again next frame, or raise RendererConfig::stagingBytes",
                 instance->asset};
     }
-    impl_->views[0].selection.set(impl_->scene, handle.index, levels);
+    impl_->views[0].selection.set(impl_->scene, handle.index, levels, fractions);
     impl_->views[0].used = true;
     return {};
 }
@@ -363,6 +365,26 @@ void Renderer::Impl::writeDraws(uint32_t view) {
     }
 }
 
+/// One behind the other, of the instances that morph.
+void Renderer::Impl::writeLambdas(uint32_t view) {
+    if (config.morphGroupCapacity == 0) return;
+    const DrawList& list = views[view].draws;
+    uint32_t* offsets = records.lambdaOffsets(view);
+    std::fill_n(offsets, instanceEnd, shader::kNoLambdas);
+    uint32_t used = 0;
+    for (const uint32_t id : list.drawInstances()) {
+        if (list.kind(id) != InstanceKind::mixed || list.fractions(id).empty()) continue;
+        const AssetView& asset = assets.at(instances[id].asset).view;
+        const uint32_t count = groupCount(asset);
+        if (count > config.morphGroupCapacity - used) {
+            ++stats.unmorphedInstances;
+            continue;
+        }
+        groupLambdas(asset, list.levels(id), list.fractions(id), {records.lambdas(view) + used, count});
+        offsets[id] = std::exchange(used, used + count);
+    }
+}
+
 void Renderer::endFrame() {
     Impl& self = *impl_;
     self.stats = {};
@@ -371,6 +393,7 @@ void Renderer::endFrame() {
         if (!stored.used) continue;
         stored.draws.update(self.scene, stored.selection, self.indexCache);
         self.writeDraws(view);
+        self.writeLambdas(view);
         const DrawStats& drawn = stored.draws.stats();
         self.stats.triangles += drawn.triangles;
         self.stats.draws += uint32_t(stored.draws.draws().size());
@@ -456,6 +479,8 @@ Status Renderer::recordDraws(VkCommandBuffer cmd, const ViewDesc& desc) {
     push.materials = self.assets.materials().address();
     push.indices = self.indexArena.address();
     push.instanceIds = self.records.idsAddress(desc.view);
+    push.lambdaOffsets = self.records.lambdaOffsetsAddress(desc.view);
+    push.lambdas = self.records.lambdasAddress(desc.view);
     const bool wire = desc.mode == ShadingMode::wire;
     vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, wire ? self.pipelines.wire() : self.pipelines.surface());
     self.recordBatches(cmd, desc.view, push, wire);
@@ -479,6 +504,8 @@ FrameGeometry Renderer::geometry(uint32_t view) const {
     out.draws = self.records.drawsAddress(view);
     out.materials = self.assets.materials().address();
     out.batches = self.views[view].draws.batches();
+    out.lambdaOffsets = self.records.lambdaOffsetsAddress(view);
+    out.lambdas = self.records.lambdasAddress(view);
     return out;
 }
 
@@ -514,13 +541,17 @@ std::optional<ShadingMode> modeNamed(std::string_view name) {
 
 RendererConfig configFor(std::span<const AssetView* const> assets, uint32_t instances, const RendererConfig& base) {
     RendererConfig config = base;
-    uint64_t patches = 0, materials = 0, faces = 0, streamBytes = 0, largestFaces = 0;
+    uint64_t patches = 0, materials = 0, faces = 0, streamBytes = 0, largestFaces = 0, groups = 0;
     for (const AssetView* asset : assets) {
         patches += asset->patchCount();
         materials += asset->materials.size();
         faces += asset->record->faceCount;
         largestFaces = std::max<uint64_t>(largestFaces, asset->record->faceCount);
         config.faceCapacity = std::max(config.faceCapacity, asset->record->maxPatchFaces);
+        groups += groupCount(*asset);
+        if (config.morphGroupCapacity > 0) {
+            streamBytes += asset->record->vertexCount * sizeof(MorphRow) + AssetStore::kAlignment;
+        }
         for (uint32_t i = 0; i < asset->vertexStreamCount; ++i) {
             streamBytes += asset->vertexStreams[i].bytes.size() + AssetStore::kAlignment;
         }
@@ -535,6 +566,7 @@ RendererConfig configFor(std::span<const AssetView* const> assets, uint32_t inst
     grow(config.assetPatchCapacity, patches);
     grow(config.patchCapacity, patches * instances);
     grow(config.materialCapacity, materials);
+    if (config.morphGroupCapacity > 0) grow(config.morphGroupCapacity, groups * instances);
     // Twice what is held: of mixed instances all, and what frames in flight still read of a whole change.
     grow(config.indexBytes, 2 * 3 * sizeof(uint32_t) * faces * instances * (1 + config.framesInFlight));
     config.vertexArenaBytes = std::max<VkDeviceSize>(config.vertexArenaBytes, streamBytes);

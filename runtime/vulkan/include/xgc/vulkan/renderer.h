@@ -46,10 +46,15 @@ struct RendererConfig {
     VkFormat depthFormat = VK_FORMAT_D32_SFLOAT;
     VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_4_BIT;
     VkCompareOp depthCompare = VK_COMPARE_OP_GREATER; ///< Camera's depth is reversed
+
+    /// Sum of the groups (groupCount of morph.h) of all instances that morph in a view. 0: none does, and no asset
+    /// takes the 8 bytes a row that morphs need.
+    uint32_t morphGroupCapacity = 0;
 };
 
 /// Capacities that hold `instances` of each of the assets with every patch at its finest: RendererConfig's arenas,
-/// staging and counts, grown from `base`. For programs that know their assets; engines set budgets.
+/// staging and counts, grown from `base`; morphs for all of them where base.morphGroupCapacity is not 0. For programs
+/// that know their assets; engines set budgets.
 RendererConfig configFor(std::span<const AssetView* const> assets, uint32_t instances, const RendererConfig& base = {});
 
 enum class ShadingMode : uint32_t { shaded, parts, levels, wire };
@@ -68,10 +73,11 @@ struct ViewDesc {
 struct FrameStats {
     uint64_t triangles = 0;
     uint32_t draws = 0;
-    uint32_t patchesChanged = 0;    ///< got another level
-    uint32_t patchesRebuilt = 0;    ///< index lists that were built, patches' or whole assets'
-    uint32_t uploadBytes = 0;       ///< indices and vertex streams
-    uint32_t deferredInstances = 0; ///< are not drawn at the levels that were selected: staging or arena was full
+    uint32_t patchesChanged = 0;     ///< got another level
+    uint32_t patchesRebuilt = 0;     ///< index lists that were built, patches' or whole assets'
+    uint32_t uploadBytes = 0;        ///< indices and vertex streams
+    uint32_t deferredInstances = 0;  ///< are not drawn at the levels that were selected: staging or arena was full
+    uint32_t unmorphedInstances = 0; ///< stand at their levels: RendererConfig::morphGroupCapacity is too small
 };
 
 /// What a host's own passes need, with shaders and pipelines of their own (shared.h has the records): valid from
@@ -86,6 +92,8 @@ struct FrameGeometry {
     VkDeviceAddress draws = 0;       ///< DrawRecord, by number of the draw
     VkDeviceAddress materials = 0;   ///< MaterialRecord
     std::span<const DrawBatch> batches;
+    VkDeviceAddress lambdaOffsets = 0; ///< a uint each instance, by id: of its lambdas; kNoLambdas: it does not morph
+    VkDeviceAddress lambdas = 0;       ///< a float a group; 0, as is lambdaOffsets, where morphGroupCapacity is 0
 };
 
 /// Draws instances of assets at any mix of levels with the host's device, queue and attachments. A frame:
@@ -130,8 +138,9 @@ public:
     Status beginFrame();
     /// Chooses the levels of all instances for a view; it keeps them until it is asked again.
     void select(uint32_t view, const SelectionDesc& desc);
-    /// The host's own choice for one instance, in view 0. outOfCapacity while its asset is not resident.
-    Status setLevels(InstanceHandle instance, Levels levels);
+    /// The host's own choice for one instance, in view 0, and fractions where it is to morph. outOfCapacity while its
+    /// asset is not resident.
+    Status setLevels(InstanceHandle instance, Levels levels, std::span<const float> fractions = {});
     /// Brings the draws of all views up to their levels, as far as staging and arena allow.
     void endFrame();
 
