@@ -232,7 +232,8 @@ TEST_CASE("parts are steered smoothly, and a limit is a whole level") {
     const float last = float(stage.asset.levelCount() - 1);
     for (int i = 0; i < 300; ++i) before = stage.select(morphing(eye, 0.125f));
     for (uint32_t p = 0; p < before.size(); ++p) {
-        if (stage.asset.patches[p].part == part) CHECK(before[p] == doctest::Approx(std::min(own[p] + 1, last)));
+        if (stage.asset.patches[p].part == part)
+            CHECK(before[p] == doctest::Approx(double(std::min(own[p] + 1, last))));
     }
 }
 
