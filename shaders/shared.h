@@ -52,7 +52,7 @@ struct InstanceRecord {
     Address colors;    ///< linear RGBA
     uint colorFormat;  ///< xgc::format::StreamFormat
     uint reserved;
-    Address morphs;    ///< xgc::MorphRow each row
+    Address morphs; ///< xgc::MorphRow each row
     uint reserved1, reserved2;
 };
 
@@ -84,7 +84,7 @@ struct PushConstants {
     Address materials;
     Address indices;
     Address instanceIds; ///< a uint each
-    uint firstDraw; ///< of the batch: gl_DrawID counts from it
+    uint firstDraw;      ///< of the batch: gl_DrawID counts from it
     uint reserved;
     Address lambdaOffsets; ///< a uint each instance: of its lambdas, or kNoLambdas; 0: nothing morphs
     Address lambdas;       ///< a float a group
