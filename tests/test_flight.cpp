@@ -52,6 +52,12 @@ bake::Flight recorded() {
             frame.desc.policy = Policy::distanceBands;
             frame.bands = {0.7f, 1.9f, 5};
         }
+        if (f > 30) {
+            frame.desc.morph = true;
+            frame.desc.morphRate = 0.3f;
+            frame.desc.hysteresis = 0;
+            frame.desc.triangleBudget = 0;
+        }
         if (f % 3 == 0) frame.desc.wholeBeyond = std::numeric_limits<float>::infinity();
         SelectionDesc desc = frame.desc;
         desc.bands = frame.bands;
@@ -123,6 +129,7 @@ TEST_CASE("damaged flights are refused with the element's name") {
     expect("\"nearest\": 0.013", "\"nearest\": -1", "frames[0] must be finite");
     expect("\"pixelsPerUnit\"", "\"pixelPerUnit\"", "frames[0]");
     expect("\"levels\": \"", "\"levels\": \"x", "hexadecimal");
+    expect("\"morphRate\"", "\"hysteresis\": 0.5, \"morphRate\"", "frames");
     expect("\"frames\"", "\"frame\"", "frames");
     expect("{", "", "not a flight");
     for (size_t length = 0; length < good.size(); length += good.size() / 50) {

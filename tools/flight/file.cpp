@@ -66,6 +66,7 @@ Json packFrame(const Flight::Frame& frame) {
     if (d.view.orthographic) json["forward"] = pack(d.view.forward);
     if (d.policy == Policy::distanceBands) json["bands"] = frame.bands;
     if (std::isfinite(d.wholeBeyond)) json["wholeBeyond"] = d.wholeBeyond;
+    if (d.morph) json["morphRate"] = d.morphRate;
     Json planes = Json::array();
     for (uint32_t i = 0; i < d.frustum.planeCount; ++i) {
         const glm::vec4& p = d.frustum.planes[i];
@@ -109,6 +110,11 @@ Flight::Frame unpackFrame(const Json& json) {
         for (const Json& band : json["bands"]) frame.bands.push_back(finite(band, -3e38f));
         if (!std::is_sorted(frame.bands.begin(), frame.bands.end())) throw Bad{"has bands that do not rise"};
         if (d.triangleBudget > 0) throw Bad{"has bands and a budget: one of them decides"};
+    }
+    if (json.contains("morphRate")) {
+        d.morph = true;
+        d.morphRate = finite(json["morphRate"], 1e-6f);
+        if (d.hysteresis > 0 || d.triangleBudget > 0) throw Bad{"morphs with a hysteresis or a budget"};
     }
     frame.triangles = json.at("triangles").get<uint64_t>();
     frame.hashes = {fromHex(json.at("levels")), fromHex(json.at("draws")), fromHex(json.at("copies"))};

@@ -119,6 +119,7 @@ uint64_t FlightPlayer::Impl::hashLevels() const {
         if (kind != InstanceKind::mixed) continue;
         hash.add(selection.levels(id));
         hash.add(selection.visible(id));
+        hash.add(selection.fractions(id));
     }
     return hash.value();
 }
