@@ -186,8 +186,12 @@ TEST_CASE("corners of one place stay together, whatever patch draws them and wha
         INFO(s.name);
         Random random(3);
         size_t apart = 0, shared = 0, blended = 0;
-        for (int i = 0; i < 20; ++i) {
-            const std::vector<uint8_t> levels = randomLevels(s.asset, random);
+        // Every level is the finest one of some states, and near the others.
+        for (uint32_t i = 0; i < 2 * s.asset.levelCount(); ++i) {
+            std::vector<uint8_t> levels(s.asset.patchCount());
+            const uint32_t spread = i % 2 ? s.asset.levelCount() : 2;
+            for (uint8_t& level : levels)
+                level = uint8_t(std::min(i / 2 + random.below(spread), s.asset.levelCount() - 1));
             const std::vector<float> fractions = randomFractions(s.asset, levels, random);
             const std::vector<float> lambdas = lambdasOf(s.asset, levels, fractions);
             std::map<glm::vec3, glm::vec3, Less> places;
