@@ -1,6 +1,4 @@
-#include <xgc/draw_list.h>
-
-#include "scene.h"
+#include "draw_list.h"
 
 #include <xgc/morph.h>
 
@@ -21,119 +19,11 @@
 namespace xgc {
 namespace {
 
-constexpr uint32_t kNoRange = IndexCache::kNoRange;
-
-/// A state of a whole asset, as long as instances are drawn in it.
-struct WholeState {
-    uint32_t holders = 0;            ///< instances, and one for the coarsest state of an asset in sight
-    uint32_t handle = format::kNone; ///< of its entries in wholeRanges
-    uint32_t firstRange = 0;
-    uint32_t finestLevel = format::kNever;
-    // While draws are listed.
-    uint32_t count = 0;
-    uint32_t firstInstance = 0;
-};
-
-struct DrawnInstance {
-    uint32_t generation = 0;
-    InstanceKind kind = InstanceKind::culled; ///< culled: holds nothing
-    bool late = false;                        ///< is not drawn as was selected
-    bool morphs = false;                      ///< has fractions
-    uint8_t wholeState = 0;
-    uint32_t asset = 0;
-    uint32_t firstSlot = 0;
-    uint32_t patchCount = 0;
-};
-
-/// A patch that gets another range.
-struct Rebind {
-    uint32_t patch;
-    uint32_t range;
-};
-
 Status outOfCapacity(const char* message, uint64_t element) {
     return {StatusCode::outOfCapacity, message, element};
 }
 
 } // namespace
-
-struct DrawList::Impl : Allocated<DrawList::Impl> {
-    DrawListConfig config;
-
-    FixedArray<DrawnInstance> instances;
-    FixedArray<uint32_t> slotRanges; ///< kNoRange: not shown
-    FixedArray<uint8_t> slotLevels;
-    FixedArray<float> slotFractions; ///< of instances that morph
-
-    FixedArray<WholeState> wholeStates; ///< asset * kMaxWholeStates + state
-    FixedArray<uint8_t> assetsInSight;  ///< hold their coarsest state
-    RangeAllocator wholeHandles;
-    FixedArray<uint32_t> wholeRanges;
-
-    // Scratch of a plan.
-    FixedArray<uint8_t> planLevels;
-    FixedArray<uint8_t> wholeLevels; ///< of a whole instance that is drawn by patches
-    FixedArray<uint8_t> heldLevels;  ///< of a state that is being held
-    FixedArray<uint8_t> allShown;    ///< ones
-    FixedArray<uint32_t> changes;    ///< patches whose level is to change, the most urgent first
-    uint32_t changeCount = 0;
-    FixedArray<Rebind> rebinds;
-    uint32_t rebindCount = 0;
-    FixedArray<uint64_t> patchMarks, domainMarks; ///< equal `plan` where seen in it
-    uint64_t plan = 0;
-
-    // The draws.
-    bool stale = true;
-    FixedArray<DrawCommand> draws;
-    FixedArray<DrawSource> sources;
-    uint32_t drawCount = 0;
-    FixedArray<DrawBatch> batches;
-    uint32_t batchCount = 0;
-    FixedArray<uint32_t> batchNext; ///< 2 * material + (four bytes): draws, then the next one's place
-    FixedArray<uint32_t> drawInstances;
-    uint32_t drawInstanceCount = 0;
-    FixedArray<uint32_t> activeStates;
-    uint32_t activeStateCount = 0;
-    DrawStats stats;
-    Status refusal;
-
-    // Of the update under way.
-    const Scene::Impl* scene = nullptr;
-    const Selection* selection = nullptr;
-    IndexCache* cache = nullptr;
-
-    bool allocate();
-    const AssetView& view(uint32_t asset) const { return *scene->assets[asset].desc.asset; }
-    WholeState& heldState(uint32_t asset, uint32_t state) {
-        return wholeStates[size_t(asset) * kMaxWholeStates + state];
-    }
-
-    uint32_t coarsestState(uint32_t asset) const { return scene->assets[asset].wholeStateCount - 1; }
-    bool holdWhole(uint32_t asset, uint32_t state);
-    void releaseWhole(uint32_t asset, uint32_t state, IndexCache& from);
-    void release(DrawnInstance& own, IndexCache& from);
-    void dropGone();
-
-    void follow(uint32_t id);
-    bool becomeWhole(DrawnInstance& own, uint32_t state);
-    void becomeCoarsest(DrawnInstance& own);
-    bool followWhole(DrawnInstance& own, uint32_t state);
-    bool followMixed(DrawnInstance& own, Levels target, std::span<const uint8_t> shown);
-    bool stands(const DrawnInstance& own, Levels target, std::span<const uint8_t> shown) const;
-    void listChanges(const DrawnInstance& own, Levels target);
-    bool goTo(DrawnInstance& own, Levels target, std::span<const uint8_t> shown, uint32_t count);
-    void mark(uint32_t patch, std::span<const uint8_t> shown);
-    void listRebinds(const DrawnInstance& own, Levels after, std::span<const uint8_t> shown);
-    bool bind(DrawnInstance& own, Levels after, std::span<const uint8_t> shown);
-    void buildAhead(const DrawnInstance& own, Levels after, std::span<const uint8_t> shown);
-    void followFractions(DrawnInstance& own, uint32_t id);
-    void keepBudget();
-
-    void listStates();
-    void listDraws();
-    template <typename Add>
-    void forDraws(Add add);
-};
 
 // Set-up ------------------------------------------------------------------------------------------------------------
 
@@ -456,88 +346,6 @@ void DrawList::update(const Scene& scene, const Selection& selection, IndexCache
     }
     if (d.stale) d.listDraws();
     d.keepBudget();
-}
-
-/// Counts the whole instances of each state and gives them their run of drawInstances, then the mixed ones.
-void DrawList::Impl::listStates() {
-    for (uint32_t i = 0; i < activeStateCount; ++i) wholeStates[activeStates[i]].count = 0;
-    activeStateCount = 0;
-    for (uint32_t id = 0; id < scene->instanceEnd; ++id) {
-        if (instances[id].kind != InstanceKind::whole) continue;
-        const uint32_t state = instances[id].asset * kMaxWholeStates + instances[id].wholeState;
-        if (wholeStates[state].count++ == 0) activeStates[activeStateCount++] = state;
-    }
-    drawInstanceCount = 0;
-    for (uint32_t i = 0; i < activeStateCount; ++i) {
-        WholeState& state = wholeStates[activeStates[i]];
-        state.firstInstance = drawInstanceCount;
-        drawInstanceCount += std::exchange(state.count, 0);
-    }
-    for (uint32_t id = 0; id < scene->instanceEnd; ++id) {
-        const DrawnInstance& own = instances[id];
-        if (own.kind == InstanceKind::mixed) drawInstances[drawInstanceCount++] = id;
-        if (own.kind != InstanceKind::whole) continue;
-        WholeState& state = heldState(own.asset, own.wholeState);
-        drawInstances[state.firstInstance + state.count++] = id;
-    }
-}
-
-/// add(material, indexBytes, command, source) for each draw, in an order that the instances' ids give.
-template <typename Add>
-void DrawList::Impl::forDraws(Add add) {
-    const auto draw = [&](const IndexRange& range, uint32_t material, uint32_t instanceCount, uint32_t firstInstance,
-                          const DrawSource& source) {
-        if (range.indexCount == 0) return;
-        const AssetDesc& asset = scene->assets[source.asset].desc;
-        const int32_t offset = asset.vertexOffset + int32_t(range.vertexOffset);
-        add(asset.firstMaterial + material, range.indexBytes,
-            DrawCommand{range.indexCount, instanceCount, range.firstIndex, offset, firstInstance}, source);
-    };
-    uint32_t nextMixed = 0;
-    for (uint32_t i = 0; i < activeStateCount; ++i) {
-        const WholeState& state = wholeStates[activeStates[i]];
-        const uint32_t asset = activeStates[i] / kMaxWholeStates;
-        for (uint32_t m = 0; m < wholeHandles.count(state.handle); ++m) {
-            draw(cache->at(wholeRanges[state.firstRange + m]), m, state.count, state.firstInstance,
-                 {asset, format::kNone, state.finestLevel});
-        }
-        nextMixed += state.count;
-    }
-    for (; nextMixed < drawInstanceCount; ++nextMixed) {
-        const DrawnInstance& own = instances[drawInstances[nextMixed]];
-        const AssetView& asset = view(own.asset);
-        for (uint32_t p = 0; p < own.patchCount; ++p) {
-            const uint32_t slot = own.firstSlot + p;
-            if (slotRanges[slot] == kNoRange) continue;
-            draw(cache->at(slotRanges[slot]), asset.patches[p].material, 1, nextMixed,
-                 {own.asset, p, slotLevels[slot]});
-        }
-    }
-}
-
-/// Counts the draws of each batch, then puts each draw in its place.
-void DrawList::Impl::listDraws() {
-    stale = false;
-    stats.triangles = 0;
-    listStates();
-    std::fill_n(batchNext.data(), batchNext.size(), 0u);
-    const auto key = [](uint32_t material, uint32_t indexBytes) { return 2 * material + (indexBytes == 4); };
-    forDraws([&](uint32_t material, uint32_t indexBytes, const DrawCommand&, const DrawSource&) {
-        assert(material < config.materialCapacity && "raise DrawListConfig::materialCapacity");
-        ++batchNext[key(material, indexBytes)];
-    });
-    drawCount = batchCount = 0;
-    for (uint32_t k = 0; k < batchNext.size(); ++k) {
-        const uint32_t count = std::exchange(batchNext[k], drawCount);
-        if (count > 0) batches[batchCount++] = {k / 2, k % 2 ? 4u : 2u, drawCount, count};
-        drawCount += count;
-    }
-    forDraws([&](uint32_t material, uint32_t indexBytes, const DrawCommand& command, const DrawSource& source) {
-        const uint32_t at = batchNext[key(material, indexBytes)]++;
-        draws[at] = command;
-        sources[at] = source;
-        stats.triangles += uint64_t(command.indexCount / 3) * command.instanceCount;
-    });
 }
 
 void DrawList::forgetAsset(uint32_t asset, IndexCache& cache) {

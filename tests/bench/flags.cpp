@@ -90,6 +90,21 @@ bool parseFlags(int argc, char** argv, const std::vector<std::string>& sections,
     return true;
 }
 
+int runSections(int argc, char** argv, const std::vector<Section>& sections) {
+    std::vector<std::string> names;
+    for (const Section& s : sections) names.push_back(s.name);
+    Flags flags;
+    if (!parseFlags(argc, argv, names, flags)) return 2;
+    if (flags.data.empty()) fmt::print("SKIPPED: real meshes (no XGC_DATA)\n");
+    int failed = 0;
+    for (const Section& s : sections) {
+        if (!flags.wants(s.name)) continue;
+        fmt::print("\n-- {}\n", s.name);
+        if (const int result = s.run(flags); result != 0) failed = result;
+    }
+    return failed;
+}
+
 Csv::Csv(const Flags& flags, const std::string& section, const std::string& columns) {
     if (flags.csv.empty()) return;
     std::filesystem::create_directories(flags.csv);

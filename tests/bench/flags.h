@@ -31,6 +31,15 @@ struct Flags {
 /// False, with the usage on stderr, where an argument is not known.
 bool parseFlags(int argc, char** argv, const std::vector<std::string>& sections, Flags& flags);
 
+/// A part of a benchmark's program.
+struct Section {
+    const char* name;
+    int (*run)(const Flags&); ///< prints its table; 0 or the exit code of a failure
+};
+/// The `main` of a program of sections: those that the arguments name, or all;
+/// one that fails does not stop the others.
+int runSections(int argc, char** argv, const std::vector<Section>& sections);
+
 /// Rows of one section, written to FOLDER/<section>.csv below a line that names commit and machine; nothing without a
 /// folder.
 class Csv {
