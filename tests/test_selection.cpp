@@ -164,6 +164,7 @@ TEST_CASE("without culling, controls and hysteresis a selection is what select g
         CHECK(levelsOf(stage, stage.selection, id) == expected);
         desc.policy = Policy::distanceBands;
         desc.bands = bands;
+        desc.wholeBeyond = SelectionDesc{}.wholeBeyond; // whole states know no bands
         select(asset, placement, desc.view, DistanceBands{bands}, expected);
         stage.selection.update(stage.scene, desc);
         CHECK(levelsOf(stage, stage.selection, id) == expected);

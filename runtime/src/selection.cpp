@@ -116,8 +116,8 @@ void Selection::Impl::decideWhole(const Subject& s) {
     s.own.whole = s.own.inBelt = false;
     // What was out of sight takes its levels at once.
     s.own.morphs = s.own.morphs && desc.morph && s.own.kind == InstanceKind::mixed;
-    if (desc.morph) {
-        // Nothing is whole.
+    if (desc.morph || desc.policy != Policy::errorPixels) {
+        // Nothing is whole: whole states go by errors.
     } else if (s.controls.empty() && s.referenceOwn) {
         s.own.whole = s.referenceOwn->whole;
         s.own.inBelt = s.referenceOwn->inBelt;

@@ -55,7 +55,7 @@ struct SelectionDesc {
     uint32_t coarserThanReference = 0;
 
     /// From so many radii of an asset's bounds on, an instance whose parts nobody steers is in one of the states of
-    /// Scene::wholeLevels, decided at once. Infinite: never.
+    /// Scene::wholeLevels, decided at once (errorPixels only). Infinite: never.
     float wholeBeyond = 6;
 
     JobSystem jobs;

@@ -416,7 +416,7 @@ typedef struct XgcSelectionDesc {
     uint32_t bandCount;
     uint32_t cullBackfaces;        /* flag */
     float contributionPixels;      /* culls what covers a smaller radius on screen */
-    float wholeBeyond;             /* radii from which on an instance is decided at once; infinite: never */
+    float wholeBeyond;             /* radii from which on an instance is decided at once, by errors; infinite: never */
     uint32_t triangleBudget;       /* 0: none; error-pixels only */
     uint32_t boundPixels;          /* flag: also computes XgcSelectionStats::pixelsBound */
     const XgcSelection* reference; /* null: none; updated before from the same scene (a shadow's: the main view's) */
