@@ -4,6 +4,7 @@ layout(location = 0) in vec3 inPosition;
 layout(location = 1) in vec3 inNormal;
 layout(location = 2) in vec4 inColor;
 layout(location = 3) flat in uint inDraw;
+layout(location = 5) flat in vec2 inMarks; // see vertex.glsl
 
 const vec3 kSky = vec3(0.31, 0.345, 0.40);
 const vec3 kGround = vec3(0.125, 0.105, 0.09);
@@ -76,7 +77,23 @@ vec3 levelColor(float levelFraction) {
     return mix(fromSrgb(stops[i]), fromSrgb(stops[i + 1]), x - float(i));
 }
 
-Surface surfaceOf(DrawRecord draw, uint mode) {
+// Of how much of the error that is allowed is there: indigo has room, amber has none left, and what is past it is white.
+vec3 heatColor(float budgets) {
+    const uint stops[6] = uint[](0x2C3566u, 0x5A4A94u, 0x9D4F95u, 0xD6617Au, 0xF28A55u, 0xF9BF4Au);
+    if (budgets > 1.001) return vec3(1.0);
+    const float x = clamp(budgets, 0.0, 1.0) * 5.0;
+    const uint i = min(uint(x), 4u);
+    return mix(fromSrgb(stops[i]), fromSrgb(stops[i + 1]), x - float(i));
+}
+
+// Projected error of the patch as it is seen at this fragment.
+float budgetsSpent(ViewRecord view) {
+    return inMarks.x * view.measure.w / max(distance(view.measure.xyz, inPosition), 1e-20);
+}
+
+Surface surfaceOf(DrawRecord draw, ViewRecord view) {
+    const uint mode = view.mode;
+    if (mode == kModeError) return Surface(heatColor(budgetsSpent(view)), vec3(0), 0.0, 0.85);
     if (mode == kModeParts) {
         const vec3 color = draw.partColor < kPartColorCount ? partColor(draw.partColor) : vec3(0.45);
         return Surface(color, vec3(0), 0.0, 0.7);
@@ -86,4 +103,10 @@ Surface surfaceOf(DrawRecord draw, uint mode) {
     const MaterialRecord m = Materials(push.materials).at[draw.material];
     // White is what most models without a material have: short of full reflection it keeps its shading.
     return Surface(0.80 * m.baseColor.rgb * inColor.rgb, m.emissive.rgb, m.metallic, m.roughness);
+}
+
+// What a host points at: warm, and still lit.
+Surface highlight(Surface s) {
+    const vec3 warm = fromSrgb(0xFF8A1Fu);
+    return Surface(mix(s.albedo, warm, 0.62 * inMarks.y), s.emissive + 0.10 * inMarks.y * warm, s.metallic, s.roughness);
 }

@@ -25,8 +25,11 @@ XGC_CONST uint kModeShaded = 0;
 XGC_CONST uint kModeParts = 1;
 XGC_CONST uint kModeLevels = 2;
 XGC_CONST uint kModeWire = 3;
+XGC_CONST uint kModeError = 4;
 
 XGC_CONST uint kPartColorCount = 12;
+
+XGC_CONST uint kNothing = 0xffffffffu; ///< names no instance and no part
 
 XGC_CONST uint kNoLambdas = 0xffffffffu;
 XGC_CONST uint kMorphRows = 4; ///< xgc::kMorphRows
@@ -38,10 +41,13 @@ struct ViewRecord {
     vec4 right; ///< the camera's unit vectors, which the lights hang on
     vec4 up;
     vec4 forward;
-    vec4 sky; ///< up in the world, for the ambient light
+    vec4 sky;     ///< up in the world, for the ambient light
+    vec4 measure; ///< of kModeError: xyz, the eye that errors are seen from; w, budgets that a world unit is at
+                  ///< distance 1
     uint mode;
-    float linePixels; ///< width of an edge's line
-    uint reserved0, reserved1;
+    float linePixels;       ///< width of an edge's line
+    uint highlightInstance; ///< or kNothing
+    uint highlightPart;
 };
 
 /// An instance: where it stands and where its vertex streams lie. Address 0: the asset has none.
@@ -53,7 +59,8 @@ struct InstanceRecord {
     uint colorFormat;  ///< xgc::format::StreamFormat
     uint reserved;
     Address morphs; ///< xgc::MorphRow each row
-    uint reserved1, reserved2;
+    float maxScale; ///< of toWorld
+    uint reserved1;
 };
 
 /// A draw: what its triangles look like, and where its instances and indices lie.
@@ -64,7 +71,8 @@ struct DrawRecord {
     float levelFraction; ///< level / the asset's coarsest
     uint vertexOffset;   ///< row that index 0 stands for
     uint indexBytes;     ///< 2 or 4
-    uint reserved0, reserved1;
+    float error;         ///< E at its level, mesh units
+    uint part;           ///< kNothing: of several parts
 };
 
 struct MaterialRecord {
@@ -91,7 +99,7 @@ struct PushConstants {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(ViewRecord) == 160);
+static_assert(sizeof(ViewRecord) == 176);
 static_assert(sizeof(InstanceRecord) == 96);
 static_assert(sizeof(DrawRecord) == 32);
 static_assert(sizeof(MaterialRecord) == 48);

@@ -3,6 +3,7 @@ layout(location = 0) out vec3 outPosition; // world
 layout(location = 1) out vec3 outNormal;   // world, zero where the asset has none
 layout(location = 2) out vec4 outColor;    // linear
 layout(location = 3) flat out uint outDraw;
+layout(location = 5) flat out vec2 outMarks; // error in world units; 1 where highlighted
 
 vec3 decodeOctahedral(uint packed) {
     const vec2 e = unpackSnorm2x16(packed);
@@ -96,5 +97,9 @@ void shadeVertex(uint row, uint draw, uint instanceInDraw) {
     outNormal = turnNormal(instance, v.normal);
     outColor = v.color;
     outDraw = draw;
-    gl_Position = Views(push.view).at.worldToClip * vec4(outPosition, 1);
+    const DrawRecord record = Draws(push.draws).at[draw];
+    ViewRecord view = Views(push.view).at;
+    const bool highlighted = id == view.highlightInstance && record.part == view.highlightPart;
+    outMarks = vec2(record.error * instance.maxScale, highlighted ? 1 : 0);
+    gl_Position = view.worldToClip * vec4(outPosition, 1);
 }

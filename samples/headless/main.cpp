@@ -117,6 +117,8 @@ Status drawFrame(App& app, const vulkan::Camera& camera, uint64_t& ticket) {
     vulkan::ViewDesc view;
     view.camera = camera;
     view.mode = *vulkan::modeNamed(app.options.mode);
+    view.measured = makeView(camera.eye, camera.fovY, float(app.options.height));
+    view.errorPixels = app.options.errorPixels;
     status = app.renderer.recordDraws(cmd, view);
     app.target.endRendering(cmd);
     if (!status.ok()) return status;
@@ -201,7 +203,7 @@ void addOptions(CLI::App& cli, Options& options) {
                               ->check(CLI::Range(1u, 1u << 30));
     cli.add_flag("--morph", options.morph, "Levels change continuously, without a pop")->excludes(budget);
     cli.add_option("--mode", options.mode, "How it is coloured")
-        ->check(CLI::IsMember({"shaded", "parts", "levels", "wire"}))
+        ->check(CLI::IsMember({"shaded", "parts", "levels", "wire", "error"}))
         ->capture_default_str();
     cli.add_option_function<std::string>(
            "--size",

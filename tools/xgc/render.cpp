@@ -217,6 +217,8 @@ bake::Status render(const RenderOptions& options) {
     if (!status.ok()) return status;
     desc.sky = desc.camera.up / glm::length(desc.camera.up);
     const View view = makeView(desc.camera.eye, desc.camera.fovY, float(size.height));
+    desc.measured = view;
+    desc.errorPixels = options.errorPixels.value_or(1);
     std::vector<uint8_t> levels;
     status = chooseLevels(options, asset, view, levels);
     if (!status.ok()) return status;
@@ -247,7 +249,7 @@ void addRender(CLI::App& app, Run& run) {
                                              "Coarsest levels whose error stays below so many pixels (default: 1)");
     command->add_option("--level", options->level, "One level for every patch")->excludes(error);
     command->add_option("--mode", options->mode, "How it is coloured")
-        ->check(CLI::IsMember({"shaded", "parts", "levels", "wire"}))
+        ->check(CLI::IsMember({"shaded", "parts", "levels", "wire", "error"}))
         ->capture_default_str();
     command->add_flag("--json", options->json, "Print triangles, error and patches per level as JSON");
     command->add_flag("--quiet", options->quiet, "Print nothing but errors");

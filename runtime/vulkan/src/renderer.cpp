@@ -86,8 +86,11 @@ shader::ViewRecord viewRecord(const ViewDesc& view) {
     record.up = glm::vec4(basis.up, 0);
     record.forward = glm::vec4(basis.forward, 0);
     record.sky = glm::vec4(view.sky, 0);
+    record.measure = glm::vec4(view.measured.eye, view.measured.pixelsPerUnit / std::max(view.errorPixels, 1e-6f));
     record.mode = uint32_t(view.mode);
     record.linePixels = view.linePixels;
+    record.highlightInstance = view.highlightInstance;
+    record.highlightPart = view.highlightPart;
     return record;
 }
 
@@ -248,6 +251,7 @@ Status Renderer::addInstance(AssetHandle handle, const Placement& placement, Ins
     record.colors = asset->colors;
     record.colorFormat = uint32_t(asset->colorFormat);
     record.morphs = asset->morphs;
+    record.maxScale = placement.maxScale;
     self.instanceEnd = std::max(self.instanceEnd, id + 1);
     out = {id, instance.generation};
     return {};
@@ -256,6 +260,7 @@ Status Renderer::addInstance(AssetHandle handle, const Placement& placement, Ins
 Status Renderer::setPlacement(InstanceHandle handle, const Placement& placement) {
     if (!impl_->find(handle)) return {StatusCode::badArgument, "setPlacement: no such instance", handle.index};
     setRows(impl_->instanceRecords[handle.index], placement);
+    impl_->instanceRecords[handle.index].maxScale = placement.maxScale;
     impl_->scene.setPlacement(handle.index, placement);
     return {};
 }
@@ -360,6 +365,9 @@ void Renderer::Impl::writeDraws(uint32_t view) {
             record.levelFraction = float(source.level) / float(coarsest);
             record.vertexOffset = uint32_t(list.draws()[i].vertexOffset);
             record.indexBytes = batch.indexBytes;
+            record.error =
+                whole ? scene.wholeError(source.asset, source.level) : asset.view.error(source.patch, source.level);
+            record.part = whole ? shader::kNothing : asset.view.patches[source.patch].part;
             out[i] = record;
         }
     }
@@ -530,7 +538,7 @@ const IndexCache& Renderer::indexCache() const {
 }
 
 std::optional<ShadingMode> modeNamed(std::string_view name) {
-    constexpr std::string_view kNames[] = {"shaded", "parts", "levels", "wire"};
+    constexpr std::string_view kNames[] = {"shaded", "parts", "levels", "wire", "error"};
     for (uint32_t i = 0; i < std::size(kNames); ++i) {
         if (kNames[i] == name) return ShadingMode(i);
     }

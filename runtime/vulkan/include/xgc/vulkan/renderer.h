@@ -57,7 +57,13 @@ struct RendererConfig {
 /// that know their assets; engines set budgets.
 RendererConfig configFor(std::span<const AssetView* const> assets, uint32_t instances, const RendererConfig& base = {});
 
-enum class ShadingMode : uint32_t { shaded, parts, levels, wire };
+enum class ShadingMode : uint32_t {
+    shaded,
+    parts,
+    levels,
+    wire,
+    error ///< how much of ViewDesc::errorPixels the errors of the drawn levels take as ViewDesc::measured sees them
+};
 /// By its name here; none for another word.
 std::optional<ShadingMode> modeNamed(std::string_view name);
 
@@ -67,6 +73,12 @@ struct ViewDesc {
     glm::vec3 sky{0, 1, 0}; ///< unit, up in the world: where the ambient light comes from
     ShadingMode mode = ShadingMode::shaded;
     float linePixels = 1.1f; ///< of the target: width of the edges in mode wire
+    // Of mode error.
+    View measured;         ///< whose pixels count: the view that levels were selected for
+    float errorPixels = 1; ///< end of the scale, 0 or more. What is past it is white
+    /// A part of an instance that is drawn in a warm tone; none by default. Instances that are drawn whole show none.
+    uint32_t highlightInstance = format::kNone;
+    uint32_t highlightPart = format::kNone;
 };
 
 /// Sums over all views, but for what the views share.
