@@ -3,22 +3,10 @@
 #ifndef XGC_SHADERS_SHARED_H
 #define XGC_SHADERS_SHARED_H
 
+#include "types.h"
+
 #ifdef __cplusplus
-#include <glm/mat4x4.hpp>
-#include <glm/vec4.hpp>
-
-#include <cstdint>
-
 namespace xgc::shader {
-
-using uint = uint32_t;
-using vec4 = glm::vec4;
-using mat4 = glm::mat4;
-using Address = uint64_t;
-#define XGC_CONST inline constexpr
-#else
-#define Address uvec2
-#define XGC_CONST const
 #endif
 
 XGC_CONST uint kModeShaded = 0;
@@ -106,7 +94,5 @@ static_assert(sizeof(MaterialRecord) == 48);
 static_assert(sizeof(PushConstants) == 72);
 } // namespace xgc::shader
 #endif
-
-#undef XGC_CONST
 
 #endif

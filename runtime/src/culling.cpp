@@ -19,15 +19,21 @@ Frustum makeFrustum(const glm::mat4& worldToClip) {
     return out;
 }
 
-MeshEye meshEye(const View& view, const glm::mat4x3& toWorld) {
-    const glm::mat3 linear(toWorld);
+bool inverseOf(const Placement& placement, glm::mat3& toMesh) {
+    const glm::mat3 linear(placement.toWorld);
     const float volume = glm::determinant(linear);
+    if (!(std::fabs(volume) > FLT_MIN && std::isfinite(volume))) return false;
+    toMesh = glm::inverse(linear);
+    return true;
+}
+
+MeshEye meshEye(const View& view, const Placement& placement) {
     MeshEye eye;
     eye.orthographic = view.orthographic;
-    eye.valid = std::fabs(volume) > FLT_MIN && std::isfinite(volume);
+    glm::mat3 toMesh;
+    eye.valid = inverseOf(placement, toMesh);
     if (!eye.valid) return eye;
-    const glm::mat3 toMesh = glm::inverse(linear);
-    eye.point = toMesh * (view.eye - toWorld[3]);
+    eye.point = toMesh * (view.eye - placement.toWorld[3]);
     eye.forward = toMesh * view.forward;
     return eye;
 }

@@ -53,7 +53,7 @@ struct MeshEye {
     bool valid = false;
 };
 
-MeshEye meshEye(const View& view, const glm::mat4x3& toWorld);
+MeshEye meshEye(const View& view, const Placement& placement);
 
 /// True where all normals of the cone look away from the eye, wherever in the sphere their faces lie: with v from the
 /// eye to the centre, dot(v, axis) >= |v| * sine + radius.

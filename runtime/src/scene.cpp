@@ -182,6 +182,11 @@ const AssetDesc& Scene::asset(uint32_t id) const {
     return impl_->assetAt(id).desc;
 }
 
+std::span<const PatchBounds> Scene::patchBounds(uint32_t id) const {
+    const SceneAsset& asset = impl_->assetAt(id);
+    return {impl_->patches.data() + asset.firstPatch, asset.desc.asset->patchCount()};
+}
+
 // Instances ---------------------------------------------------------------------------------------------------------
 
 const SceneInstance& Scene::Impl::at(uint32_t id) const {
@@ -233,8 +238,16 @@ void Scene::setVisible(uint32_t id, bool visible) {
     impl_->at(id).visible = visible;
 }
 
+bool Scene::visible(uint32_t id) const {
+    return impl_->at(id).visible;
+}
+
 uint32_t Scene::assetOf(uint32_t id) const {
     return impl_->at(id).asset;
+}
+
+uint32_t Scene::firstSlot(uint32_t id) const {
+    return impl_->at(id).firstSlot;
 }
 
 uint32_t Scene::instanceEnd() const {
@@ -271,6 +284,10 @@ PartControl Scene::part(uint32_t id, uint32_t part) const {
     const SceneInstance& instance = impl_->at(id);
     assert(part < impl_->assetAt(instance.asset).desc.asset->parts.size() && "no such part");
     return instance.steered() ? impl_->controls[instance.firstControl + part] : PartControl{};
+}
+
+bool Scene::steered(uint32_t id) const {
+    return impl_->at(id).steered();
 }
 
 void Scene::clearParts(uint32_t id) {

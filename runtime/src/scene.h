@@ -5,19 +5,7 @@
 
 #include <xgc/scene.h>
 
-#include <glm/vec4.hpp>
-
 namespace xgc {
-
-/// What selection reads of a patch, without the rest of its record.
-struct PatchBounds {
-    glm::vec4 sphere; ///< mesh space
-    glm::vec3 coneAxis;
-    float coneSine;   ///< of the angle between the axis and its farthest normal; above 1: no cone
-    float importance; ///< of its part
-    uint32_t coneLevel;
-    uint32_t part;
-};
 
 /// Of one asset: thirty octaves in quarters, zero, and the largest error itself.
 inline constexpr uint32_t kMaxWholeStates = 124;

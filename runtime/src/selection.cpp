@@ -199,7 +199,7 @@ void Selection::Impl::chooseWhole(const Subject& s, ChunkCount& count) {
 }
 
 void Selection::Impl::chooseMixed(const Subject& s, ChunkCount& count) {
-    const MeshEye eye = desc.cullBackfaces ? meshEye(desc.view, s.instance.placement.toWorld) : MeshEye{};
+    const MeshEye eye = desc.cullBackfaces ? meshEye(desc.view, s.instance.placement) : MeshEye{};
     const uint32_t coarsest = s.asset.levelCount() - 1;
     const bool mayCoarsen = !s.own.inBelt || desc.triangleBudget > 0;
     count.stats.consideredPatches += uint32_t(s.patches.size());
@@ -234,7 +234,7 @@ float Selection::Impl::nextLambda(const Subject& s, uint32_t patch, bool glides)
 }
 
 void Selection::Impl::chooseContinuous(const Subject& s, ChunkCount& count) {
-    const MeshEye eye = desc.cullBackfaces ? meshEye(desc.view, s.instance.placement.toWorld) : MeshEye{};
+    const MeshEye eye = desc.cullBackfaces ? meshEye(desc.view, s.instance.placement) : MeshEye{};
     const bool glides = s.own.morphs;
     s.own.morphs = true;
     count.stats.consideredPatches += uint32_t(s.patches.size());

@@ -3,9 +3,21 @@
 #include <xgc/asset.h>
 #include <xgc/select.h>
 
+#include <glm/vec4.hpp>
+
 #include <memory>
 
 namespace xgc {
+
+/// What selection reads of a patch, without the rest of its record.
+struct PatchBounds {
+    glm::vec4 sphere; ///< mesh space
+    glm::vec3 coneAxis;
+    float coneSine;   ///< of the angle between the axis and its farthest normal; above 1: no cone
+    float importance; ///< of its part
+    uint32_t coneLevel;
+    uint32_t part;
+};
 
 /// How a part of an instance is steered. Applied after the policy: bias first, then the limits.
 struct PartControl {
@@ -54,6 +66,7 @@ public:
     /// Its instances must be gone.
     void removeAsset(uint32_t asset);
     const AssetDesc& asset(uint32_t asset) const;
+    std::span<const PatchBounds> patchBounds(uint32_t asset) const;
 
     Status addInstance(uint32_t asset, const Placement& placement, uint32_t& id);
     void removeInstance(uint32_t instance);
@@ -61,11 +74,17 @@ public:
     const Placement& placement(uint32_t instance) const;
     /// An instance that is not visible is culled in every view. They start visible.
     void setVisible(uint32_t instance, bool visible);
+    bool visible(uint32_t instance) const;
     uint32_t assetOf(uint32_t instance) const;
+    /// The patches of an instance have numbers of their own from here on, below patchCapacity, while it lives: for what
+    /// a host keeps of each.
+    uint32_t firstSlot(uint32_t instance) const;
 
     /// Steers a part of one instance. Fails only where steeredPartCapacity is taken.
     Status setPart(uint32_t instance, uint32_t part, const PartControl& control);
     PartControl part(uint32_t instance, uint32_t part) const;
+    /// True where a part of the instance was steered since it was added, or cleared.
+    bool steered(uint32_t instance) const;
     /// Gives all parts of the instance back to the policies.
     void clearParts(uint32_t instance);
 

@@ -2,6 +2,7 @@
 
 #include <xgc/asset.h>
 
+#include <glm/mat3x3.hpp>
 #include <glm/mat4x3.hpp>
 #include <glm/mat4x4.hpp>
 
@@ -32,6 +33,9 @@ struct Placement {
 
 /// Computes maxScale as the largest singular value, rounded up. `toWorld` must be affine, finite and not zero.
 Placement makePlacement(const glm::mat4& toWorld);
+
+/// The inverse of the placement's linear part, in which normal cones are tested; false where it is flat.
+bool inverseOf(const Placement& placement, glm::mat3& toMesh);
 
 /// The thesis's criterion: level = the number of thresholds at or below the distance from the eye to the
 /// patch's bounding sphere (0 inside it), in radii of the asset's bounding sphere. Thresholds rise. None: level 0

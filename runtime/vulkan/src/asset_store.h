@@ -19,6 +19,7 @@ struct StoredAsset {
     uint32_t generation = 0; ///< odd while it is there
     uint32_t sceneAsset = 0; ///< its id in the renderer's scene
     uint32_t instanceCount = 0;
+    bool onGpu = false;         ///< compute shaders can draw it
     RangeList::Range bytes;     ///< in the vertex arena, units of AssetStore::kAlignment
     RangeList::Range materials; ///< in the renderer's list
     std::vector<uint8_t> partColors;

@@ -62,6 +62,7 @@ struct HeadlessDevice::Impl {
     VkInstance instance = VK_NULL_HANDLE;
     VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
     Candidate chosen;
+    bool drawIndirectCount = false;
     VkDevice device = VK_NULL_HANDLE;
     VkQueue queue = VK_NULL_HANDLE;
     MessageSink sink;
@@ -167,8 +168,11 @@ Status HeadlessDevice::Impl::chooseDevice() {
 }
 
 Status HeadlessDevice::Impl::createDevice() {
-    Features features;
+    Features features, have;
     requireFeatures(features);
+    function<PFN_vkGetPhysicalDeviceFeatures2>("vkGetPhysicalDeviceFeatures2")(chosen.device, have.chain());
+    features.vulkan12.drawIndirectCount = have.vulkan12.drawIndirectCount;
+    drawIndirectCount = have.vulkan12.drawIndirectCount == VK_TRUE;
     const float priority = 1;
     VkDeviceQueueCreateInfo queueInfo{};
     queueInfo.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
@@ -209,6 +213,7 @@ ContextDesc HeadlessDevice::contextDesc() const {
     desc.physicalDevice = impl_->chosen.device;
     desc.device = impl_->device;
     desc.queueFamily = impl_->chosen.queueFamily;
+    desc.drawIndirectCount = impl_->drawIndirectCount;
     desc.allocation = impl_->allocation;
     return desc;
 }

@@ -3,6 +3,7 @@
 #include "asset_store.h"
 #include "barriers.h"
 #include "frame_records.h"
+#include "gpu_view.h"
 #include "pipelines.h"
 #include "timeline.h"
 
@@ -34,7 +35,11 @@ struct StoredInstance {
 struct StoredView {
     Selection selection;
     DrawList draws;
-    bool used = false; ///< was asked for levels
+    bool used = false;                               ///< was asked for levels
+    const char* hostReason = "GpuPathConfig::views"; ///< null: `gpu` chooses
+    GpuView gpu;
+
+    bool onDevice() const { return used && !hostReason; }
 };
 
 SceneConfig sceneConfig(const RendererConfig& config) {
@@ -108,6 +113,10 @@ struct Renderer::Impl {
     Scene scene;
     IndexCache indexCache;
     std::vector<StoredView> views;
+    GpuPipelines gpuPipelines;
+    GpuScene gpuScene;
+    const char* gpuLacks = nullptr;    ///< what the device has not, for the compute path
+    uint32_t assetsOffGpu = 0;         ///< that the path cannot draw
     std::vector<uint32_t> storedAsset; ///< by id of the scene's asset: its index in the store
 
     std::vector<StoredInstance> instances;               ///< by id in the scene
@@ -121,11 +130,18 @@ struct Renderer::Impl {
     FrameStats stats;
 
     Status allocate();
+    Status allocateGpu();
+    bool hasGpu() const { return config.gpu.views > 0 && !gpuLacks; }
+    bool isOnGpu(uint32_t instance) const { return assets.at(instances[instance].asset).onGpu; }
+    Status addGpuAsset(StoredAsset& asset);
+    const char* hostReason(uint32_t view, const SelectionDesc& desc) const;
+    void writeGpu();
     StoredInstance* find(InstanceHandle handle);
     void showResident();
     void writeDraws(uint32_t view);
     void writeLambdas(uint32_t view);
     void recordBatches(VkCommandBuffer cmd, uint32_t view, shader::PushConstants push, bool wire) const;
+    void recordGpuDraws(VkCommandBuffer cmd, uint32_t view, shader::PushConstants push, bool wire) const;
 };
 
 // Set-up ------------------------------------------------------------------------------------------------------------
@@ -159,10 +175,23 @@ Status Renderer::Impl::allocate() {
                                            config.framesInFlight, config.morphGroupCapacity});
     }
     if (status.ok()) status = timeline.create(*context);
+    if (status.ok()) status = allocateGpu();
     instances.resize(config.instanceCapacity);
     instanceRecords.resize(config.instanceCapacity);
     storedAsset.resize(config.assetCapacity);
     indexCopies.reserve(cache.copyCapacity);
+    return status;
+}
+
+Status Renderer::Impl::allocateGpu() {
+    if (config.gpu.views == 0) return {};
+    if (!context->hasDrawIndirectCount()) gpuLacks = "drawIndirectCount";
+    if (gpuLacks) return {};
+    Status status = gpuPipelines.create(*context);
+    if (status.ok()) status = gpuScene.create(*context, config);
+    for (uint32_t view = 0; view < std::min(config.gpu.views, config.viewCapacity) && status.ok(); ++view) {
+        status = views[view].gpu.create(*context, config, gpuScene.stateCapacity());
+    }
     return status;
 }
 
@@ -184,6 +213,50 @@ Status Renderer::create(const Context& context, const RendererConfig& config) {
     return status;
 }
 
+// The compute path --------------------------------------------------------------------------------------------------
+
+/// An asset that the path cannot draw is no failure: views are then selected on the host.
+Status Renderer::Impl::addGpuAsset(StoredAsset& asset) {
+    asset.onGpu = false;
+    if (!hasGpu()) return {};
+    const Status status = gpuScene.addAsset(scene, asset.sceneAsset, asset.partColors);
+    asset.onGpu = status.ok();
+    if (status.code != StatusCode::unsupported) return status;
+    ++assetsOffGpu;
+    return {};
+}
+
+/// By name; null where nothing speaks against it.
+const char* Renderer::Impl::hostReason(uint32_t view, const SelectionDesc& desc) const {
+    if (view >= config.gpu.views) return "GpuPathConfig::views";
+    if (gpuLacks) return gpuLacks;
+    if (assetsOffGpu > 0) return "an asset with a patch of more than 1024 domains";
+    return GpuView::lacks(desc);
+}
+
+void Renderer::Impl::recordGpuDraws(VkCommandBuffer cmd, uint32_t view, shader::PushConstants push, bool wire) const {
+    const Functions& vk = context->vk();
+    const GpuView& gpu = views[view].gpu;
+    push.draws = gpu.drawsAddress();
+    push.indices = gpu.indicesAddress();
+    push.instanceIds = gpu.idsAddress();
+    push.lambdaOffsets = push.lambdas = 0;
+    vk.vkCmdPushConstants(cmd, pipelines.layout(), VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                          sizeof(push), &push);
+    if (!wire) vk.vkCmdBindIndexBuffer(cmd, gpu.buffer(), gpu.indicesOffset(), VK_INDEX_TYPE_UINT32);
+    const auto draw = wire ? vk.vkCmdDrawIndirectCount : vk.vkCmdDrawIndexedIndirectCount; // as recordBatches
+    draw(cmd, gpu.buffer(), gpu.commandsOffset(), gpu.buffer(), gpu.countOffset(), gpu.drawCapacity(),
+         sizeof(DrawCommand));
+}
+
+const char* Renderer::hostReason(uint32_t view) const {
+    return impl_->views[view].hostReason;
+}
+
+const GpuStats& Renderer::gpuStats(uint32_t view) const {
+    return impl_->views[view].gpu.stats();
+}
+
 // Assets and instances ----------------------------------------------------------------------------------------------
 
 Status Renderer::addAsset(const AssetView& asset, AssetHandle& out) {
@@ -196,6 +269,10 @@ Status Renderer::addAsset(const AssetView& asset, AssetHandle& out) {
                                  stored.sceneAsset);
     if (status.ok()) {
         status = self.indexCache.addAsset(stored.sceneAsset, stored.view);
+        if (status.ok()) {
+            status = self.addGpuAsset(stored);
+            if (!status.ok()) self.indexCache.removeAsset(stored.sceneAsset);
+        }
         if (!status.ok()) self.scene.removeAsset(stored.sceneAsset);
     }
     if (!status.ok()) {
@@ -217,8 +294,11 @@ Status Renderer::removeAsset(AssetHandle handle) {
     Impl& self = *impl_;
     const StoredAsset* asset = self.assets.find(handle);
     const uint32_t sceneAsset = asset ? asset->sceneAsset : 0;
+    const bool onGpu = asset && asset->onGpu;
     const Status status = self.assets.remove(handle, self.frame);
     if (!status.ok()) return status;
+    if (onGpu) self.gpuScene.removeAsset(sceneAsset, self.frame);
+    if (!onGpu && self.hasGpu()) --self.assetsOffGpu;
     for (StoredView& view : self.views) {
         if (view.used) view.draws.forgetAsset(sceneAsset, self.indexCache);
     }
@@ -240,8 +320,15 @@ Status Renderer::addInstance(AssetHandle handle, const Placement& placement, Ins
     uint32_t id = 0;
     const Status status = self.scene.addInstance(asset->sceneAsset, placement, id);
     if (!status.ok()) return status;
-    ++asset->instanceCount;
     StoredInstance& instance = self.instances[id];
+    if (asset->onGpu) {
+        const Status added = self.gpuScene.addInstance(self.scene, id, instance.generation + 1);
+        if (!added.ok()) {
+            self.scene.removeInstance(id);
+            return added;
+        }
+    }
+    ++asset->instanceCount;
     instance = {instance.generation + 1, handle.index};
     shader::InstanceRecord& record = self.instanceRecords[id];
     record = {};
@@ -262,6 +349,7 @@ Status Renderer::setPlacement(InstanceHandle handle, const Placement& placement)
     setRows(impl_->instanceRecords[handle.index], placement);
     impl_->instanceRecords[handle.index].maxScale = placement.maxScale;
     impl_->scene.setPlacement(handle.index, placement);
+    if (impl_->isOnGpu(handle.index)) impl_->gpuScene.setPlacement(handle.index, placement);
     return {};
 }
 
@@ -290,6 +378,7 @@ Status Renderer::clearParts(InstanceHandle handle) {
 Status Renderer::removeInstance(InstanceHandle handle) {
     StoredInstance* instance = impl_->find(handle);
     if (!instance) return {StatusCode::badArgument, "removeInstance: no such instance", handle.index};
+    if (impl_->isOnGpu(handle.index)) impl_->gpuScene.removeInstance(impl_->scene, handle.index);
     impl_->scene.removeInstance(handle.index);
     --impl_->assets.at(instance->asset).instanceCount;
     ++instance->generation;
@@ -329,8 +418,16 @@ void Renderer::Impl::showResident() {
 
 void Renderer::select(uint32_t view, const SelectionDesc& desc) {
     assert(view < impl_->views.size() && "raise RendererConfig::viewCapacity");
-    impl_->views[view].selection.update(impl_->scene, desc);
-    impl_->views[view].used = true;
+    StoredView& stored = impl_->views[view];
+    const bool wasOnDevice = stored.onDevice();
+    stored.used = true;
+    stored.hostReason = impl_->hostReason(view, desc);
+    if (stored.onDevice()) {
+        if (!wasOnDevice) stored.draws.clear(impl_->indexCache);
+        stored.gpu.ask(desc);
+    } else {
+        stored.selection.update(impl_->scene, desc);
+    }
 }
 
 Status Renderer::setLevels(InstanceHandle handle, Levels levels, std::span<const float> fractions) {
@@ -343,6 +440,7 @@ Status Renderer::setLevels(InstanceHandle handle, Levels levels, std::span<const
     }
     impl_->views[0].selection.set(impl_->scene, handle.index, levels, fractions);
     impl_->views[0].used = true;
+    impl_->views[0].hostReason = "setLevels";
     return {};
 }
 
@@ -393,12 +491,21 @@ void Renderer::Impl::writeLambdas(uint32_t view) {
     }
 }
 
+void Renderer::Impl::writeGpu() {
+    bool written = false;
+    for (StoredView& view : views) {
+        if (!view.onDevice()) continue;
+        if (!std::exchange(written, true)) gpuScene.write(scene, frame);
+        view.gpu.write(gpuScene, frame);
+    }
+}
+
 void Renderer::endFrame() {
     Impl& self = *impl_;
     self.stats = {};
     for (uint32_t view = 0; view < self.views.size(); ++view) {
         StoredView& stored = self.views[view];
-        if (!stored.used) continue;
+        if (!stored.used || stored.onDevice()) continue;
         stored.draws.update(self.scene, stored.selection, self.indexCache);
         self.writeDraws(view);
         self.writeLambdas(view);
@@ -409,6 +516,7 @@ void Renderer::endFrame() {
         self.stats.deferredInstances += drawn.deferredInstances;
     }
     self.indexCache.endFrame();
+    self.writeGpu();
     std::copy_n(self.instanceRecords.begin(), self.instanceEnd, self.records.instances());
     self.indexCopies.clear();
     for (const CopyRange& range : self.indexCache.copies()) {
@@ -433,6 +541,9 @@ void Renderer::recordTransfers(VkCommandBuffer cmd) const {
     if (!self.indexCopies.empty()) {
         vk.vkCmdCopyBuffer(cmd, self.staging.handle(), self.indexArena.handle(), uint32_t(self.indexCopies.size()),
                            self.indexCopies.data());
+    }
+    for (const StoredView& view : self.views) {
+        if (view.onDevice()) view.gpu.record(cmd, self.gpuPipelines);
     }
     if (streams.empty() && self.indexCopies.empty()) return;
     memoryBarrier(vk, cmd, {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT},
@@ -491,7 +602,11 @@ Status Renderer::recordDraws(VkCommandBuffer cmd, const ViewDesc& desc) {
     push.lambdas = self.records.lambdasAddress(desc.view);
     const bool wire = desc.mode == ShadingMode::wire;
     vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, wire ? self.pipelines.wire() : self.pipelines.surface());
-    self.recordBatches(cmd, desc.view, push, wire);
+    if (self.views[desc.view].onDevice()) {
+        self.recordGpuDraws(cmd, desc.view, push, wire);
+    } else {
+        self.recordBatches(cmd, desc.view, push, wire);
+    }
     return {};
 }
 

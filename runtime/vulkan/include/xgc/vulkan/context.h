@@ -35,6 +35,7 @@ struct ContextDesc {
     VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
     VkDevice device = VK_NULL_HANDLE; ///< Vulkan 1.3, made with the features of features.h
     uint32_t queueFamily = 0;         ///< graphics; where the host submits the command buffers that xgc records into
+    bool drawIndirectCount = false;   ///< the device was made with this feature: the compute path needs it
     const VkAllocationCallbacks* allocation = nullptr; ///< host memory; null: the driver's own
     MemoryHooks memory;                                ///< device memory; empty: one vkAllocateMemory a resource
 };
@@ -52,6 +53,7 @@ public:
     const VkAllocationCallbacks* allocation() const { return desc_.allocation; }
     VkDeviceSize maxBufferBytes() const { return maxBufferBytes_; }
     uint32_t maxDrawIndirectCount() const { return maxDrawIndirectCount_; }
+    bool hasDrawIndirectCount() const { return desc_.drawIndirectCount; }
 
     VkResult allocate(const MemoryRequest& request, Memory& out) const;
     void release(const Memory& memory) const;

@@ -18,6 +18,8 @@ namespace xgc::vulkan {
 /// |                                                        | storage buffer range; no descriptors at all   |
 /// | timelineSemaphore                                      | frames in flight                              |
 /// | synchronization2, dynamicRendering                     | barriers, and the host's own attachments      |
+///
+/// And what it can use: drawIndirectCount, for the compute path (ContextDesc::drawIndirectCount).
 struct Features {
     VkPhysicalDeviceFeatures2 core{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, nullptr, {}};
     VkPhysicalDeviceVulkan11Features vulkan11{};

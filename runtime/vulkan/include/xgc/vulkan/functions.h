@@ -23,16 +23,22 @@
     X(vkCmdBlitImage)                                                                                                  \
     X(vkCmdCopyBuffer)                                                                                                 \
     X(vkCmdCopyImageToBuffer)                                                                                          \
+    X(vkCmdDispatch)                                                                                                   \
+    X(vkCmdDispatchIndirect)                                                                                           \
     X(vkCmdDraw)                                                                                                       \
     X(vkCmdDrawIndexedIndirect)                                                                                        \
+    X(vkCmdDrawIndexedIndirectCount)                                                                                   \
     X(vkCmdDrawIndirect)                                                                                               \
+    X(vkCmdDrawIndirectCount)                                                                                          \
     X(vkCmdEndRendering)                                                                                               \
+    X(vkCmdFillBuffer)                                                                                                 \
     X(vkCmdPipelineBarrier2)                                                                                           \
     X(vkCmdPushConstants)                                                                                              \
     X(vkCmdSetScissor)                                                                                                 \
     X(vkCmdSetViewport)                                                                                                \
     X(vkCreateBuffer)                                                                                                  \
     X(vkCreateCommandPool)                                                                                             \
+    X(vkCreateComputePipelines)                                                                                        \
     X(vkCreateGraphicsPipelines)                                                                                       \
     X(vkCreateImage)                                                                                                   \
     X(vkCreateImageView)                                                                                               \

@@ -21,6 +21,25 @@ struct InstanceHandle {
     uint32_t generation = 0;
 };
 
+/// The compute path: the device itself chooses levels, builds index lists and fills in the draws of a view, all of it
+/// anew each frame. The same levels, index lists and draws as Selection and buildIndices make, bit for bit.
+struct GpuPathConfig {
+    uint32_t views = 0;                    ///< the first so many may be selected on the device
+    VkDeviceSize tableBytes = 64ull << 20; ///< of all assets: about nine bytes a face at level 0
+    uint32_t indexBytes = 64u << 20;       ///< a view: four a drawn index
+    uint32_t drawCapacity = 65536;         ///< a view: patches of what is drawn, whole or mixed
+    uint32_t runCapacity = 65536;          ///< an instance, or a whole state of an asset, a material each
+};
+
+/// What the compute path made of a view, of the frame framesInFlight ago.
+struct GpuStats {
+    uint32_t draws = 0;
+    uint32_t patches = 0;
+    uint32_t indices = 0;
+    /// GpuPathConfig::drawCapacity or indexBytes did not suffice, and what came last is not drawn.
+    bool incomplete = false;
+};
+
 /// Fixed capacities: all memory is taken by `create`.
 struct RendererConfig {
     uint32_t assetCapacity = 64;
@@ -50,6 +69,8 @@ struct RendererConfig {
     /// Sum of the groups (groupCount of morph.h) of all instances that morph in a view. 0: none does, and no asset
     /// takes the 8 bytes a row that morphs need.
     uint32_t morphGroupCapacity = 0;
+
+    GpuPathConfig gpu;
 };
 
 /// Capacities that hold `instances` of each of the assets with every patch at its finest: RendererConfig's arenas,
@@ -148,8 +169,13 @@ public:
     Status removeInstance(InstanceHandle instance);
 
     Status beginFrame();
-    /// Chooses the levels of all instances for a view; it keeps them until it is asked again.
+    /// Chooses the levels of all instances for a view; it keeps them until it is asked again. On the device, where
+    /// GpuPathConfig::views says so and nothing speaks against it; else here.
     void select(uint32_t view, const SelectionDesc& desc);
+    /// Why the view's latest selection was made here, by the name of what the device or the compute path lacks; null
+    /// where it is made on the device.
+    const char* hostReason(uint32_t view) const;
+    const GpuStats& gpuStats(uint32_t view) const;
     /// The host's own choice for one instance, in view 0, and fractions where it is to morph. outOfCapacity while its
     /// asset is not resident.
     Status setLevels(InstanceHandle instance, Levels levels, std::span<const float> fractions = {});
