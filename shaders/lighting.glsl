@@ -108,5 +108,5 @@ Surface surfaceOf(DrawRecord draw, ViewRecord view) {
 // What a host points at: warm, and still lit.
 Surface highlight(Surface s) {
     const vec3 warm = fromSrgb(0xFF8A1Fu);
-    return Surface(mix(s.albedo, warm, 0.62 * inMarks.y), s.emissive + 0.10 * inMarks.y * warm, s.metallic, s.roughness);
+    return Surface(mix(s.albedo, warm, 0.50 * inMarks.y), s.emissive + 0.08 * inMarks.y * warm, s.metallic, s.roughness);
 }

@@ -1,0 +1,139 @@
+#include "panel.h"
+
+#include "theme.h"
+#include "widgets.h"
+
+#include <fmt/format.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+
+namespace xgc::viewer {
+namespace {
+
+constexpr const char* kBundled[] = {"creature", "shaft", "terrain", "temple", "tree"};
+
+void buildOpen(ViewerState& state) {
+    if (ImGui::Button("Open ...", {-1, 0})) ImGui::OpenPopup("open");
+    tip("Open another model beside these. Files can be dropped into the window, too.");
+    if (!ImGui::BeginPopup("open")) return;
+    static std::string path;
+    ImGui::TextUnformatted("A file (.xgc, or a model to bake)");
+    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 22);
+    bool open = ImGui::InputText("##path", &path, ImGuiInputTextFlags_EnterReturnsTrue);
+    ImGui::SameLine();
+    open |= ImGui::Button("Open");
+    if (open && !path.empty()) {
+        state.askOpen = path;
+        ImGui::CloseCurrentPopup();
+    }
+    caption("OR A BUNDLED ONE");
+    for (const char* name : kBundled) {
+        if (ImGui::Selectable(name)) state.askOpen = name;
+    }
+    ImGui::EndPopup();
+}
+
+void buildModels(ViewerState& state, const Models& models) {
+    caption("MODELS");
+    for (uint32_t i = 0; i < models.all().size(); ++i) {
+        const LoadedFile& file = models.all()[i]->file;
+        ImGui::PushID(int(i));
+        ImGui::TextUnformatted(file.name.c_str());
+        ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(" x ").x -
+                        2 * ImGui::GetStyle().FramePadding.x);
+        if (ImGui::SmallButton(" x ")) state.askClose = i;
+        tip("Close this model.");
+        ImGui::PushFont(smallFont());
+        ImGui::TextDisabled("%s", fmt::format("{} triangles, {} parts, {} levels", grouped(file.view.record->faceCount),
+                                              file.view.parts.size(), file.view.levelCount())
+                                      .c_str());
+        ImGui::PopFont();
+        tip(fmt::format("{} patches, {} in memory{}", file.view.patchCount(), bytesText(double(file.bytes.size)),
+                        file.baked ? ", baked here with the defaults of xgc bake" : "")
+                .c_str());
+        ImGui::PopID();
+    }
+    buildOpen(state);
+}
+
+void buildColours(ViewerState& state) {
+    struct Mode {
+        const char* label;
+        const char* tip;
+    };
+    constexpr Mode kModes[] = {{"Shaded", "1: the model's own materials under studio light"},
+                               {"Parts", "2: a colour for each part, unlike its neighbours'"},
+                               {"Levels", "3: from fine (blue) to coarse (yellow)"},
+                               {"Wire", "4: the triangles' edges"},
+                               {"Error", "5: how much of the allowed error each patch takes; white is past it"}};
+    caption("COLOUR BY");
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x * 0.5f;
+    const float width = (ImGui::GetContentRegionAvail().x - 4 * gap) / 5;
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, ImGui::GetStyle().FramePadding.y});
+    for (uint32_t i = 0; i < 5; ++i) {
+        if (i > 0) ImGui::SameLine(0, gap);
+        const auto mode = vulkan::ShadingMode(i);
+        if (toggleButton(kModes[i].label, state.mode == mode, width)) state.mode = mode;
+        tip(kModes[i].tip);
+    }
+    ImGui::PopStyleVar();
+    if (state.mode == vulkan::ShadingMode::levels) legend(levelColor, "finest", "coarsest");
+    if (state.mode == vulkan::ShadingMode::error)
+        legend(heatColor, "no error", fmt::format("{:.2g} px; white: more", state.pixels).c_str());
+}
+
+void buildLevels(ViewerState& state, const Models& models) {
+    caption("LEVELS");
+    uint32_t faces = 1000;
+    for (const auto& model : models.all()) faces = std::max(faces, model->file.view.record->faceCount);
+    ImGui::SetNextItemWidth(-ImGui::GetFontSize() * 5.6f);
+    ImGui::SliderFloat("pixels", &state.pixels, 0.0f, 64, "%.2f", ImGuiSliderFlags_Logarithmic);
+    tip("Error that is allowed on screen: each patch takes the coarsest level that stays below. [ halves, ] doubles. "
+        "Ctrl+click to type.");
+    ImGui::Checkbox("##budget", &state.useBudget);
+    tip("B: hold a number of triangles, at as few pixels of error as that takes.");
+    ImGui::SameLine();
+    ImGui::BeginDisabled(!state.useBudget || state.morph);
+    ImGui::SetNextItemWidth(-ImGui::GetFontSize() * 5.6f);
+    ImGui::SliderInt("budget", &state.budget, 100, int(faces * std::max<size_t>(1, models.all().size())), "%d",
+                     ImGuiSliderFlags_Logarithmic);
+    ImGui::EndDisabled();
+    tip("Most triangles of a frame. Levels that change continuously take no budget.");
+    ImGui::Checkbox("morph", &state.morph);
+    tip("M: levels change continuously, without a pop.");
+    ImGui::SameLine(0, ImGui::GetFontSize());
+    bool frozen = state.frozen.has_value();
+    if (ImGui::Checkbox("freeze", &frozen)) state.askFreeze = true;
+    tip("X: keep the levels and the culling of this camera, and look at them from outside.");
+    ImGui::SameLine(0, ImGui::GetFontSize());
+    ImGui::Checkbox("split", &state.split);
+    tip("V: beside it, one level for all patches at as many triangles. Drag the line.");
+    const Measured& m = state.measured;
+    ImGui::PushFont(smallFont());
+    ImGui::TextDisabled("%s", fmt::format("{} triangles in {} draws hold {:.3g} px{}", grouped(m.triangles), m.draws,
+                                          m.pixels, m.overBudget ? " (the least there are)" : "")
+                                  .c_str());
+    ImGui::PopFont();
+}
+
+} // namespace
+
+void buildPanel(ViewerState& state, Models& models, const DrawnModels& drawn, float width, float height) {
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize({width, height});
+    ImGui::Begin("panel", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus);
+    ImGui::TextUnformatted("xgc-viewer");
+    ImGui::PushFont(smallFont());
+    ImGui::TextDisabled("%s", state.device.c_str());
+    ImGui::PopFont();
+    buildModels(state, models);
+    buildColours(state);
+    buildLevels(state, models);
+    buildParts(state, models, drawn);
+    ImGui::End();
+}
+
+} // namespace xgc::viewer
