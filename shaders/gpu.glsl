@@ -51,3 +51,15 @@ uint levelIn(GpuAsset asset, uint subject, uint patchId) {
     const uint firstSlot = Instances(frame.instances).at[subject - frame.stateCapacity].firstSlot;
     return (Words(frame.slots).at[firstSlot + patchId] >> 8) & 0xff;
 }
+
+// A level of the depth pyramid in frame.depth: level 0 is the image, each further one half its size, rounded up.
+struct DepthLevel {
+    uint first;
+    uvec2 size;
+};
+
+DepthLevel depthLevel(uint level) {
+    DepthLevel at = DepthLevel(0, uvec2(frame.depthSize[0], frame.depthSize[1]));
+    for (uint i = 0; i < level; ++i) at = DepthLevel(at.first + at.size.x * at.size.y, (at.size + 1) / 2);
+    return at;
+}

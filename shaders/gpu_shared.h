@@ -5,6 +5,10 @@
 #include "types.h"
 
 #ifdef __cplusplus
+#include <cstddef>
+#endif
+
+#ifdef __cplusplus
 namespace xgc::shader {
 #endif
 
@@ -199,11 +203,15 @@ struct GpuFrame {
     float looseBand, middleBand, tightBand;
     float wholeInner, wholeOuter, beltInner; ///< radii
     uint reserved0, reserved1, reserved2;
+    // Of the second phase.
+    mat4 worldToClip;
+    Address depth; ///< float: the pyramid of what the first one drew
+    uint depthSize[2];
 };
 
 XGC_CONST uint kPhaseAll = 0;    ///< everything that is visible
 XGC_CONST uint kPhaseSeen = 1;   ///< of that, what was seen in the last frame
-XGC_CONST uint kPhaseUnseen = 2; ///< of the rest, what the depth of the first does not hide
+XGC_CONST uint kPhaseUnseen = 2; ///< of the rest, what the depth of the first does not hide: not by gpu_select
 
 struct GpuPush {
     Address frame;
@@ -216,7 +224,7 @@ static_assert(sizeof(GpuPatch) == 96);
 static_assert(sizeof(GpuAsset) == 160);
 static_assert(sizeof(GpuInstance) == 128);
 static_assert(sizeof(GpuControl) == 32);
-static_assert(sizeof(GpuFrame) % 16 == 0);
+static_assert(sizeof(GpuFrame) % 16 == 0 && offsetof(GpuFrame, worldToClip) % 16 == 0);
 } // namespace xgc::shader
 #endif
 

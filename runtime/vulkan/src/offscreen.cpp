@@ -49,6 +49,7 @@ struct Offscreen::Impl {
 
     ~Impl();
     Status createAttachments();
+    void startRendering(VkCommandBuffer cmd, VkAttachmentLoadOp load, std::span<const float, 4> clear) const;
     Status createSlot(Slot& slot);
     Slot& slotOf(uint64_t f) { return slots[f % slots.size()]; }
     bool multisampled() const { return desc.samples != VK_SAMPLE_COUNT_1_BIT; }
@@ -77,7 +78,9 @@ Status Offscreen::Impl::createAttachments() {
     }
     if (status.ok()) {
         status = depth.create(*context, drawnSize(), desc.depthFormat, desc.samples,
-                              VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, VK_IMAGE_ASPECT_DEPTH_BIT);
+                              VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
+                                  (desc.pauses ? VK_IMAGE_USAGE_TRANSFER_SRC_BIT : 0),
+                              VK_IMAGE_ASPECT_DEPTH_BIT);
     }
     if (status.ok() && desc.supersampling == 2) {
         status =
@@ -117,6 +120,9 @@ Status Offscreen::create(const Context& context, VkQueue queue, const OffscreenD
     }
     if (desc.supersampling != 1 && desc.supersampling != 2) {
         return {StatusCode::badArgument, "OffscreenDesc::supersampling: 1 or 2", desc.supersampling};
+    }
+    if (desc.pauses && desc.samples != VK_SAMPLE_COUNT_1_BIT) {
+        return {StatusCode::badArgument, "OffscreenDesc::pauses: takes one sample a pixel", desc.samples};
     }
     auto impl = std::make_unique<Impl>();
     impl->context = &context;
@@ -162,7 +168,6 @@ void Offscreen::beginRendering(VkCommandBuffer cmd, std::span<const float, 4> cl
         imageBarrier(vk, cmd, {target.image(), aspect, VK_IMAGE_LAYOUT_UNDEFINED, layout}, before, after);
     };
     const VkImageLayout colorLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-    const VkImageLayout depthLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
     // The frame before may still be drawing to the attachments, or copying from them.
     discard(self.color, VK_IMAGE_ASPECT_COLOR_BIT, colorLayout,
             {kColorWrite.stages | kTransferRead.stages, kColorWrite.access}, kColorWrite);
@@ -170,37 +175,68 @@ void Offscreen::beginRendering(VkCommandBuffer cmd, std::span<const float, 4> cl
         discard(self.samples, VK_IMAGE_ASPECT_COLOR_BIT, colorLayout, kColorWrite,
                 {kColorWrite.stages, kColorWrite.access | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT});
     }
-    discard(self.depth, VK_IMAGE_ASPECT_DEPTH_BIT, depthLayout, kDepthWrite, kDepthWrite);
+    discard(self.depth, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, kDepthWrite, kDepthWrite);
 
-    VkRenderingAttachmentInfo color{};
-    color.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
-    color.imageView = self.multisampled() ? self.samples.view() : self.color.view();
-    color.imageLayout = colorLayout;
-    color.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-    color.storeOp = self.multisampled() ? VK_ATTACHMENT_STORE_OP_DONT_CARE : VK_ATTACHMENT_STORE_OP_STORE;
-    std::copy(clear.begin(), clear.end(), color.clearValue.color.float32);
-    if (self.multisampled()) {
-        color.resolveMode = VK_RESOLVE_MODE_AVERAGE_BIT;
-        color.resolveImageView = self.color.view();
-        color.resolveImageLayout = colorLayout;
+    self.startRendering(cmd, VK_ATTACHMENT_LOAD_OP_CLEAR, clear);
+}
+
+void Offscreen::Impl::startRendering(VkCommandBuffer cmd, VkAttachmentLoadOp load,
+                                     std::span<const float, 4> clear) const {
+    const Functions& vk = context->vk();
+    const VkImageLayout colorLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    VkRenderingAttachmentInfo colors{};
+    colors.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+    colors.imageView = multisampled() ? samples.view() : color.view();
+    colors.imageLayout = colorLayout;
+    colors.loadOp = load;
+    colors.storeOp = multisampled() ? VK_ATTACHMENT_STORE_OP_DONT_CARE : VK_ATTACHMENT_STORE_OP_STORE;
+    std::copy(clear.begin(), clear.end(), colors.clearValue.color.float32);
+    if (multisampled()) {
+        colors.resolveMode = VK_RESOLVE_MODE_AVERAGE_BIT;
+        colors.resolveImageView = color.view();
+        colors.resolveImageLayout = colorLayout;
     }
-    VkRenderingAttachmentInfo depth{};
-    depth.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
-    depth.imageView = self.depth.view();
-    depth.imageLayout = depthLayout;
-    depth.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-    depth.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    VkRenderingAttachmentInfo depths{};
+    depths.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+    depths.imageView = depth.view();
+    depths.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+    depths.loadOp = load;
+    depths.storeOp = desc.pauses ? VK_ATTACHMENT_STORE_OP_STORE : VK_ATTACHMENT_STORE_OP_DONT_CARE;
     VkRenderingInfo info{};
     info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
-    info.renderArea = {{0, 0}, self.drawnSize()};
+    info.renderArea = {{0, 0}, drawnSize()};
     info.layerCount = 1;
     info.colorAttachmentCount = 1;
-    info.pColorAttachments = &color;
-    info.pDepthAttachment = &depth;
+    info.pColorAttachments = &colors;
+    info.pDepthAttachment = &depths;
     vk.vkCmdBeginRendering(cmd, &info);
     const VkViewport viewport{0, 0, float(info.renderArea.extent.width), float(info.renderArea.extent.height), 0, 1};
     vk.vkCmdSetViewport(cmd, 0, 1, &viewport);
     vk.vkCmdSetScissor(cmd, 0, 1, &info.renderArea);
+}
+
+VkImage Offscreen::pauseRendering(VkCommandBuffer cmd) {
+    const Impl& self = *impl_;
+    const Functions& vk = self.context->vk();
+    vk.vkCmdEndRendering(cmd);
+    imageBarrier(vk, cmd,
+                 {self.depth.image(), VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL},
+                 kDepthWrite, kCopyRead);
+    return self.depth.image();
+}
+
+void Offscreen::resumeRendering(VkCommandBuffer cmd) {
+    const Impl& self = *impl_;
+    const Functions& vk = self.context->vk();
+    imageBarrier(vk, cmd,
+                 {self.depth.image(), VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                  VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL},
+                 kCopyRead, kDepthWrite);
+    memoryBarrier(vk, cmd, kColorWrite,
+                  {kColorWrite.stages, kColorWrite.access | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT});
+    constexpr std::array<float, 4> kNone{};
+    self.startRendering(cmd, VK_ATTACHMENT_LOAD_OP_LOAD, kNone);
 }
 
 /// Scales the drawn picture down: the linear filter, halfway between four pixels, is their mean.

@@ -141,7 +141,12 @@ struct Renderer::Impl {
     void writeDraws(uint32_t view);
     void writeLambdas(uint32_t view);
     void recordBatches(VkCommandBuffer cmd, uint32_t view, shader::PushConstants push, bool wire) const;
-    void recordGpuDraws(VkCommandBuffer cmd, uint32_t view, shader::PushConstants push, bool wire) const;
+    struct GpuDraws {
+        uint32_t view;
+        bool late, wire;
+    };
+    void recordGpuDraws(VkCommandBuffer cmd, const GpuDraws& what, shader::PushConstants push) const;
+    Status recordDraws(VkCommandBuffer cmd, const ViewDesc& desc, bool late);
 };
 
 // Set-up ------------------------------------------------------------------------------------------------------------
@@ -234,19 +239,37 @@ const char* Renderer::Impl::hostReason(uint32_t view, const SelectionDesc& desc)
     return GpuView::lacks(desc);
 }
 
-void Renderer::Impl::recordGpuDraws(VkCommandBuffer cmd, uint32_t view, shader::PushConstants push, bool wire) const {
+void Renderer::Impl::recordGpuDraws(VkCommandBuffer cmd, const GpuDraws& what, shader::PushConstants push) const {
     const Functions& vk = context->vk();
-    const GpuView& gpu = views[view].gpu;
-    push.draws = gpu.drawsAddress();
-    push.indices = gpu.indicesAddress();
-    push.instanceIds = gpu.idsAddress();
+    const GpuView& gpu = views[what.view].gpu;
+    const GpuView::Lists& lists = gpu.lists(what.late);
+    push.draws = gpu.address() + lists.draws;
+    push.indices = gpu.indices(what.late).address();
+    push.instanceIds = gpu.address() + lists.ids;
     push.lambdaOffsets = push.lambdas = 0;
     vk.vkCmdPushConstants(cmd, pipelines.layout(), VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                           sizeof(push), &push);
-    if (!wire) vk.vkCmdBindIndexBuffer(cmd, gpu.buffer(), gpu.indicesOffset(), VK_INDEX_TYPE_UINT32);
-    const auto draw = wire ? vk.vkCmdDrawIndirectCount : vk.vkCmdDrawIndexedIndirectCount; // as recordBatches
-    draw(cmd, gpu.buffer(), gpu.commandsOffset(), gpu.buffer(), gpu.countOffset(), gpu.drawCapacity(),
-         sizeof(DrawCommand));
+    if (!what.wire) vk.vkCmdBindIndexBuffer(cmd, gpu.indices(what.late).handle(), 0, VK_INDEX_TYPE_UINT32);
+    const auto draw = what.wire ? vk.vkCmdDrawIndirectCount : vk.vkCmdDrawIndexedIndirectCount; // as recordBatches
+    draw(cmd, gpu.buffer(), lists.commands, gpu.buffer(), lists.totals + offsetof(shader::GpuTotals, drawCount),
+         gpu.drawCapacity(), sizeof(DrawCommand));
+}
+
+void Renderer::useOcclusion(uint32_t view, bool use) {
+    assert(view < impl_->views.size() && "raise RendererConfig::viewCapacity");
+    impl_->views[view].gpu.useOcclusion(use);
+}
+
+Status Renderer::recordOcclusion(VkCommandBuffer cmd, const ViewDesc& desc, VkImage depth, VkExtent2D size) {
+    StoredView& stored = impl_->views[desc.view];
+    if (!stored.onDevice() || !stored.gpu.occludes()) return {};
+    return stored.gpu.recordLate(cmd, impl_->gpuPipelines, desc.camera.worldToClip(), depth, size);
+}
+
+Status Renderer::recordLateDraws(VkCommandBuffer cmd, const ViewDesc& desc) {
+    const StoredView& stored = impl_->views[desc.view];
+    if (!stored.onDevice() || !stored.gpu.occludes()) return {};
+    return impl_->recordDraws(cmd, desc, true);
 }
 
 const char* Renderer::hostReason(uint32_t view) const {
@@ -580,34 +603,37 @@ void Renderer::Impl::recordBatches(VkCommandBuffer cmd, uint32_t view, shader::P
     }
 }
 
-Status Renderer::recordDraws(VkCommandBuffer cmd, const ViewDesc& desc) {
-    Impl& self = *impl_;
-    if (self.passCount == self.config.passCapacity) {
+Status Renderer::Impl::recordDraws(VkCommandBuffer cmd, const ViewDesc& desc, bool late) {
+    if (passCount == config.passCapacity) {
         return {StatusCode::outOfCapacity, "too many passes a frame: raise RendererConfig::passCapacity",
-                self.passCount + 1ull};
+                passCount + 1ull};
     }
-    if (desc.view >= self.views.size()) {
+    if (desc.view >= views.size()) {
         return {StatusCode::outOfCapacity, "no such view: raise RendererConfig::viewCapacity", desc.view + 1ull};
     }
-    const Functions& vk = self.context->vk();
-    self.records.passes()[self.passCount] = viewRecord(desc);
+    const Functions& vk = context->vk();
+    records.passes()[passCount] = viewRecord(desc);
     shader::PushConstants push{};
-    push.view = self.records.passAddress(self.passCount++);
-    push.instances = self.records.instancesAddress();
-    push.draws = self.records.drawsAddress(desc.view);
-    push.materials = self.assets.materials().address();
-    push.indices = self.indexArena.address();
-    push.instanceIds = self.records.idsAddress(desc.view);
-    push.lambdaOffsets = self.records.lambdaOffsetsAddress(desc.view);
-    push.lambdas = self.records.lambdasAddress(desc.view);
+    push.view = records.passAddress(passCount++);
+    push.instances = records.instancesAddress();
+    push.draws = records.drawsAddress(desc.view);
+    push.materials = assets.materials().address();
+    push.indices = indexArena.address();
+    push.instanceIds = records.idsAddress(desc.view);
+    push.lambdaOffsets = records.lambdaOffsetsAddress(desc.view);
+    push.lambdas = records.lambdasAddress(desc.view);
     const bool wire = desc.mode == ShadingMode::wire;
-    vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, wire ? self.pipelines.wire() : self.pipelines.surface());
-    if (self.views[desc.view].onDevice()) {
-        self.recordGpuDraws(cmd, desc.view, push, wire);
+    vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, wire ? pipelines.wire() : pipelines.surface());
+    if (views[desc.view].onDevice()) {
+        recordGpuDraws(cmd, {desc.view, late, wire}, push);
     } else {
-        self.recordBatches(cmd, desc.view, push, wire);
+        recordBatches(cmd, desc.view, push, wire);
     }
     return {};
+}
+
+Status Renderer::recordDraws(VkCommandBuffer cmd, const ViewDesc& desc) {
+    return impl_->recordDraws(cmd, desc, false);
 }
 
 VkSemaphoreSubmitInfo Renderer::frameDone() const {

@@ -17,6 +17,8 @@ struct OffscreenDesc {
     /// (ViewDesc::linePixels) doubles too.
     uint32_t supersampling = 1;
     uint32_t framesInFlight = 2;
+    /// Rendering can be paused to look at the depth (pauseRendering); one sample a pixel then.
+    bool pauses = false;
 };
 
 /// A target to draw pictures to where there is no window: attachments, a command buffer a frame in flight, and a
@@ -44,6 +46,10 @@ public:
     /// scissor.
     void beginRendering(VkCommandBuffer cmd, std::span<const float, 4> clear);
     void endRendering(VkCommandBuffer cmd);
+    /// Between the two: ends rendering, and goes on with what was drawn. In between the depth lies in `depth`, in
+    /// VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL.
+    VkImage pauseRendering(VkCommandBuffer cmd);
+    void resumeRendering(VkCommandBuffer cmd);
     /// Submits and signals `signals` too, such as Renderer::frameDone. `frame` names the frame for `read`.
     Status submit(std::span<const VkSemaphoreSubmitInfo> signals, uint64_t& frame);
     /// Waits for one frame and copies its pixels out: size.width * size.height * 4 bytes, rows from the top.

@@ -29,6 +29,8 @@ struct GpuPathConfig {
     uint32_t indexBytes = 64u << 20;       ///< a view: four a drawn index
     uint32_t drawCapacity = 65536;         ///< a view: patches of what is drawn, whole or mixed
     uint32_t runCapacity = 65536;          ///< an instance, or a whole state of an asset, a material each
+    /// Pixels of the largest depth image of recordOcclusion; 0: no occlusion. With it a view takes twice the memory.
+    uint32_t depthPixels = 0;
 };
 
 /// What the compute path made of a view, of the frame framesInFlight ago.
@@ -36,6 +38,7 @@ struct GpuStats {
     uint32_t draws = 0;
     uint32_t patches = 0;
     uint32_t indices = 0;
+    uint32_t latePatches = 0; ///< of those: drawn by recordLateDraws
     /// GpuPathConfig::drawCapacity or indexBytes did not suffice, and what came last is not drawn.
     bool incomplete = false;
 };
@@ -189,6 +192,20 @@ public:
     Status recordDraws(VkCommandBuffer cmd, const ViewDesc& view);
     /// To be signalled by the host's submission of the frame.
     VkSemaphoreSubmitInfo frameDone() const;
+
+    /// Occlusion, for views on the device: recordDraws draws what was seen in the last frame, recordOcclusion looks
+    /// what its depth hides of the rest, and recordLateDraws draws what that does not. So nothing is missing that can
+    /// be seen, and a view with occlusion takes all three in every frame, in one command buffer:
+    ///
+    ///     recordDraws(cmd, view); vkCmdEndRendering(cmd); depth to VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL
+    ///     recordOcclusion(cmd, view, depth, size); depth back; vkCmdBeginRendering(cmd, ... loads ...)
+    ///     recordLateDraws(cmd, view);
+    ///
+    /// `depth`: of the whole view, single-sampled D32_SFLOAT, reversed (near is 1). For what is selected on the host
+    /// the two do nothing. From the view's next select on.
+    void useOcclusion(uint32_t view, bool use);
+    Status recordOcclusion(VkCommandBuffer cmd, const ViewDesc& view, VkImage depth, VkExtent2D size);
+    Status recordLateDraws(VkCommandBuffer cmd, const ViewDesc& view);
 
     FrameGeometry geometry(uint32_t view = 0) const;
     /// Of the latest endFrame.
