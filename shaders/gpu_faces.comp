@@ -145,6 +145,7 @@ void writeDraw(uint at, uint firstIndex, uint indexCount, uint instanceCount, Dr
     const uint words[5] = uint[](indexCount, instanceCount, firstIndex, 0, record.firstInstance);
     for (uint i = 0; i < 5; ++i) WordsOut(frame.commands).at[5 * at + i] = words[i];
     Draws(frame.draws).at[at] = record;
+    atomicAdd(Totals(frame.totals).at.triangles, indexCount / 3 * instanceCount);
 }
 
 // A mixed instance has a draw an item; a whole state one for all of the run, whose indices lie together.

@@ -81,4 +81,5 @@ void main() {
     Totals(frame.totals).at.groups[0] = min(listed.x, kGroupsPerRow);
     Totals(frame.totals).at.groups[1] = (listed.x + kGroupsPerRow - 1) / kGroupsPerRow;
     Totals(frame.totals).at.groups[2] = 1;
+    Totals(frame.totals).at.triangles = 0;
 }

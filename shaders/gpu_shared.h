@@ -154,6 +154,8 @@ struct GpuTotals {
     uint indexCount;
     uint missingItems;   ///< not 0: items or draws did not fit
     uint missingIndices; ///< not 0: indices did not fit
+    uint triangles;      ///< of all instances, modulo 2^32
+    uint reserved0, reserved1, reserved2;
 };
 
 /// A frame of a view: everything is found from here.

@@ -226,6 +226,7 @@ void GpuView::write(const GpuScene& scene, uint64_t frame) {
         stats_.draws += t.drawCount;
         stats_.patches += t.itemCount;
         stats_.indices += t.indexCount;
+        stats_.triangles += t.triangles;
         stats_.incomplete |= t.missingItems > 0 || t.missingIndices > 0;
     }
     stats_.latePatches = totals[1].itemCount;

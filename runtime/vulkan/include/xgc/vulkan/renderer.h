@@ -38,6 +38,7 @@ struct GpuStats {
     uint32_t draws = 0;
     uint32_t patches = 0;
     uint32_t indices = 0;
+    uint64_t triangles = 0;   ///< of all instances; 2^32 and more a pass are counted wrongly
     uint32_t latePatches = 0; ///< of those: drawn by recordLateDraws
     /// GpuPathConfig::drawCapacity or indexBytes did not suffice, and what came last is not drawn.
     bool incomplete = false;
