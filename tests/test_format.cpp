@@ -277,7 +277,7 @@ uint32_t patchWithLists(const AssetView& v) {
 TEST_CASE("tables: each rule is enforced") {
     const auto asset = [](auto change) { return record<AssetRecord>(SectionId::asset, 0, change); };
     const auto patch = [](auto change) { return record<PatchRecord>(SectionId::patches, 1, change); };
-    expect(StatusCode::unsupported, "several tiers", asset([](AssetRecord& r) { r.tierCount = 2; }));
+    expectCorrupt("patchPages has another count", asset([](AssetRecord& r) { r.tierCount = 2; }));
     expectCorrupt("level count", asset([](AssetRecord& r) { r.levelCount = 255; }));
     expectCorrupt("another count", asset([](AssetRecord& r) { r.levelCount = 5; }));
     expectCorrupt("another count", asset([](AssetRecord& r) { r.domainCount += 1; }));

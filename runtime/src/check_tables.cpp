@@ -27,8 +27,10 @@ bool allBelow(std::span<const uint32_t> values, uint32_t end) {
 
 Status checkCounts(const AssetView& v) {
     const AssetRecord& r = *v.record;
-    if (r.tierCount != 1 || r.pageGroupCount != 1)
-        return unsupported("the asset has several tiers or page groups; bake it with this version");
+    if (r.tierCount == 0 || r.tierCount > kMaxTiers || r.pageGroupCount == 0)
+        return corrupt("tier or page count out of range", r.tierCount);
+    if (v.patchPages.size() != (r.tierCount > 1 ? uint64_t(r.patchCount) * r.tierCount : 0))
+        return corrupt("section patchPages has another count than patches times tiers");
     if (r.levelCount == 0 || r.levelCount > kMaxLevels) return corrupt("level count out of range", r.levelCount);
     if (r.listCount == 0 || r.listCount > kMaxFaceLists) return corrupt("face list count out of range", r.listCount);
     if (r.materialCount == 0 || r.partCount == 0 || r.patchCount == 0)
@@ -301,7 +303,7 @@ Status checkNodes(const AssetView& v) {
     return {};
 }
 
-Status checkPageTable(const AssetView& v) {
+Status checkOnePage(const AssetView& v) {
     if (v.pages.size() != 1) return corrupt("the asset has not one page", v.pages.size());
     const PageRecord& page = v.pages[0];
     const FileHeader& header = *reinterpret_cast<const FileHeader*>(v.bytes.data());
@@ -314,6 +316,10 @@ Status checkPageTable(const AssetView& v) {
     if (page.firstStream != 0 || page.streamCount != v.streams.size())
         return corrupt("the page has a wrong run of streams");
     return {};
+}
+
+Status checkPageTable(const AssetView& v) {
+    return v.tierCount() > 1 ? checkPageTables(v) : checkOnePage(v);
 }
 
 } // namespace

@@ -134,6 +134,7 @@ Status readSections(AssetView& view) {
     view.patchFaceCounts = reader.array<uint32_t>(SectionId::patchFaceCounts);
     view.merges = reader.array<MergeRecord>(SectionId::mergeTree);
     view.provenance = reader.text(SectionId::provenance);
+    view.patchPages = reader.array<uint32_t>(SectionId::patchPages);
     if (!reader.status().ok()) return reader.status();
     if (record.size() != 1) return corrupt("the file has no asset record", uint64_t(SectionId::asset));
     view.record = record.data();
@@ -144,6 +145,9 @@ Status readTables(std::span<const std::byte> bytes, AssetView& view) {
     if (Status s = checkContainer(bytes); !s.ok()) return s;
     view.bytes = bytes;
     if (Status s = readSections(view); !s.ok()) return s;
+    for (const PageRecord& page : view.pages) {
+        if (page.tier < kMaxTiers) view.tierLevels[page.tier] = uint8_t(std::min<uint32_t>(page.firstLevel, kNever));
+    }
     return checkTables(view);
 }
 
@@ -168,6 +172,8 @@ Status openTables(std::span<const std::byte> bytes, AssetView& out) {
 Status openAll(std::span<const std::byte> bytes, AssetView& out) {
     AssetView view;
     if (Status s = readTables(bytes, view); !s.ok()) return s;
+    if (view.tierCount() > 1)
+        return unsupported("the file is cut into pages: stream it (residency.h), or join them with xgc::decode");
     if (Status s = installPage(view); !s.ok()) return s;
     if (Status s = checkPage(view); !s.ok()) return s;
     out = view;

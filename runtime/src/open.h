@@ -28,6 +28,13 @@ std::span<const format::SectionRecord> sectionsOf(std::span<const std::byte> byt
 /// Relations within and between the tables (check_tables.cpp).
 Status checkTables(const AssetView& view);
 
+/// What is told of pages in a file of several tiers, and where each lies (check_pages.cpp).
+Status checkPageTables(const AssetView& view);
+
+/// A stream's place, size and format, and that it follows `before`, which ends at `end` (open_page.cpp).
+Status checkStreamRecord(const format::StreamRecord& stream, const format::StreamRecord* before, uint64_t end,
+                         uint64_t pageBytes, uint64_t index);
+
 /// Installs the streams of the one page of version 2 (open_page.cpp).
 Status installPage(AssetView& view);
 

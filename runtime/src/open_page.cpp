@@ -56,20 +56,26 @@ bool formatFits(StreamKind kind, StreamFormat format) {
 }
 
 /// Streams are sorted by kind and set, and follow each other at the next multiple of 64.
-Status checkPlacement(const AssetView& v) {
+Status checkPlacement(const StreamRecord& s, const StreamRecord* before, uint64_t end, uint64_t pageBytes,
+                      uint64_t index) {
+    if (before && (s.kind < before->kind || (s.kind == before->kind && s.set <= before->set)))
+        return corrupt("stream out of order", index);
+    if (s.offset != alignUp(end) || s.offset > pageBytes || s.storedBytes > pageBytes - s.offset)
+        return corrupt("stream with a wrong offset or size", index);
+    if (s.rawBytes != uint64_t(s.count) * s.stride || (s.codec == Codec::none && s.storedBytes != s.rawBytes))
+        return corrupt("stream with another size than its elements", index);
+    if (s.firstElement != 0) return corrupt("stream that continues a page that is not there", index);
+    return {};
+}
+
+Status checkPlacements(const AssetView& v) {
     const PageRecord& page = v.pages[0];
     uint64_t end = 0;
     for (size_t i = 0; i < v.streams.size(); ++i) {
         const StreamRecord& s = v.streams[i];
         const StreamRecord* before = i > 0 ? &v.streams[i - 1] : nullptr;
-        if (before && (s.kind < before->kind || (s.kind == before->kind && s.set <= before->set)))
-            return corrupt("stream out of order", i);
         if (s.codec != Codec::none) return unsupported("stream is compressed; decode the file with xgc::load first", i);
-        if (s.offset != alignUp(end) || s.offset > page.storedBytes || s.storedBytes > page.storedBytes - s.offset)
-            return corrupt("stream with a wrong offset or size", i);
-        if (s.storedBytes != s.rawBytes || s.storedBytes != uint64_t(s.count) * s.stride)
-            return corrupt("stream with another size than its elements", i);
-        if (s.firstElement != 0) return corrupt("stream that continues a page that is not there", i);
+        if (Status status = checkPlacement(s, before, end, page.storedBytes, i); !status.ok()) return status;
         end = s.offset + s.storedBytes;
     }
     return alignUp(end) == page.storedBytes ? Status{} : corrupt("the page does not end behind its last stream");
@@ -97,13 +103,18 @@ bool isRowStream(StreamKind kind) {
     return kind >= StreamKind::position && kind <= StreamKind::birthLevel;
 }
 
+Status checkFormat(const StreamRecord& s, uint64_t index) {
+    if (!formatFits(s.kind, s.format)) return unsupported("stream in a format that this version does not read", index);
+    if (s.stride != sizeOf(s.format)) return corrupt("stream with another stride than its format", index);
+    return {};
+}
+
 Status installStream(AssetView& v, uint64_t index) {
     const StreamRecord& s = v.streams[index];
     if (isRowStream(s.kind) && s.count != v.record->vertexCount)
         return corrupt("stream with another count than the vertex rows", index);
     if (!isKnown(s.kind)) return {}; // a later version's
-    if (!formatFits(s.kind, s.format)) return unsupported("stream in a format that this version does not read", index);
-    if (s.stride != sizeOf(s.format)) return corrupt("stream with another stride than its format", index);
+    if (Status status = checkFormat(s, index); !status.ok()) return status;
     switch (s.kind) {
     case StreamKind::position:
         v.positions = elements<glm::vec3>(v, s);
@@ -157,13 +168,21 @@ Status checkCounts(const AssetView& v) {
 
 } // namespace
 
+Status checkStreamRecord(const StreamRecord& s, const StreamRecord* before, uint64_t end, uint64_t pageBytes,
+                         uint64_t index) {
+    if (s.codec != Codec::none && s.codec != Codec::zstd)
+        return unsupported("stream has a codec that pages are not read in; update xgc", index);
+    if (Status status = checkPlacement(s, before, end, pageBytes, index); !status.ok()) return status;
+    return isKnown(s.kind) ? checkFormat(s, index) : Status{};
+}
+
 Status installPage(AssetView& view) {
     const PageRecord& page = view.pages[0];
     if (view.bytes.size() < page.offset + page.storedBytes)
         return {StatusCode::truncated, "the file ends within its page; copy it again", view.bytes.size()};
     if (xxh64(view.bytes.subspan(page.offset, page.storedBytes)) != page.checksum)
         return {StatusCode::badChecksum, "the page was altered; copy the file again"};
-    if (Status s = checkPlacement(view); !s.ok()) return s;
+    if (Status s = checkPlacements(view); !s.ok()) return s;
     for (size_t i = 0; i < view.streams.size(); ++i) {
         if (Status s = installStream(view, i); !s.ok()) return s;
     }

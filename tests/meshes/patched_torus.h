@@ -119,11 +119,11 @@ struct OpenAsset {
     std::string failure; ///< empty where it opened
 };
 
-inline OpenAsset openBuilt(const Patched& built) {
+inline OpenAsset openBuilt(const Patched& built, uint32_t tiers = 1) {
     OpenAsset asset;
     std::vector<std::byte> bytes;
     const bake::Status laidOut =
-        bake::layOutAsset(built.mesh, built.parts, built.hierarchy, built.errors, true, "{}", bytes);
+        bake::layOutAsset(built.mesh, built.parts, built.hierarchy, built.errors, true, "{}", bytes, tiers);
     if (!laidOut.ok()) {
         asset.failure = laidOut.message;
         return asset;

@@ -136,8 +136,8 @@ const char* sectionName(SectionId id) {
         return "partShapes";
     case SectionId::patchFaceCounts:
         return "patchFaceCounts";
-    case SectionId::patchTiers:
-        return "patchTiers";
+    case SectionId::patchPages:
+        return "patchPages";
     }
     return "unknown";
 }

@@ -188,6 +188,7 @@ std::string provenance(const BakeOptions& options) {
         for (const PartImportance& i : options.importance) json["importance"][i.part] = fmt::format("{}", i.factor);
         if (options.importanceChannel >= 0) json["importanceChannel"] = options.importanceChannel;
     }
+    if (options.pages.tiers > 1) json["tiers"] = options.pages.tiers;
     if (options.positionBits > 0) json["positionBits"] = options.positionBits;
     if (options.rounding.normalBits < 16) json["normalBits"] = options.rounding.normalBits;
     if (options.rounding.uvBits > 0) json["uvBits"] = options.rounding.uvBits;
@@ -196,7 +197,7 @@ std::string provenance(const BakeOptions& options) {
 
 Status layOut(const BakeOptions& options, Work& work, BakeReport& report) {
     Status s = layOutAsset(work.mesh, work.parts, work.hierarchy, work.errors, report.weld.closed(),
-                           provenance(options), work.bytes);
+                           provenance(options), work.bytes, options.pages.tiers);
     const bool rounds = options.rounding.normalBits < 16 || options.rounding.uvBits > 0;
     if (s.ok() && rounds) s = roundAttributes(options.rounding, work.bytes);
     report.fileBytes = report.imageBytes = work.bytes.size();
@@ -206,6 +207,16 @@ Status layOut(const BakeOptions& options, Work& work, BakeReport& report) {
 Status compress(const BakeOptions& options, Work& work, BakeReport& report) {
     std::vector<std::byte> image = std::move(work.bytes);
     Status s = compressAsset(image, options.compression, work.bytes);
+    report.fileBytes = work.bytes.size();
+    return s;
+}
+
+Status cutPages(const BakeOptions& options, Work& work, BakeReport& report) {
+    const std::vector<std::byte> image = std::move(work.bytes);
+    PageOptions pages = options.pages;
+    pages.compress = options.compress;
+    pages.zstdLevel = options.compression.zstdLevel;
+    Status s = cutIntoPages(image, pages, work.bytes);
     report.fileBytes = work.bytes.size();
     return s;
 }
@@ -244,7 +255,11 @@ Status bake(const BakeOptions& options, BakeReport& report) {
     if (s.ok()) s = stage("measure", [&] { return measure(options, work, report); });
     if (s.ok() && options.rmsSamples > 0) s = stage("sample", [&] { return sample(options, work, report); });
     if (s.ok()) s = stage("lay out", [&] { return layOut(options, work, report); });
-    if (s.ok() && options.compress) s = stage("compress", [&] { return compress(options, work, report); });
+    if (s.ok() && options.pages.tiers > 1) {
+        s = stage("cut", [&] { return cutPages(options, work, report); });
+    } else if (s.ok() && options.compress) {
+        s = stage("compress", [&] { return compress(options, work, report); });
+    }
     if (s.ok()) report.sizes = sizesOf(work.bytes);
     if (s.ok()) judge(options, report);
     if (s.ok()) s = obey(options, report);

@@ -14,6 +14,10 @@ namespace {
 using namespace format;
 using namespace layout;
 
+/// A tier has so many times the vertices of the next coarser one: what is drawn from it then has about as much beside
+/// it that is not drawn as the patches that are wanted no finer.
+constexpr uint32_t kTierRatio = 4;
+
 /// Names, one after the other.
 class Strings {
 public:
@@ -34,6 +38,7 @@ struct Layout {
     const Segmentation& parts;
     const Hierarchy& hierarchy;
     const PatchErrors& errors;
+    uint32_t tierCount = 1;
     Domains domains{};
     Faces faces{};
     Rows rows{};
@@ -155,6 +160,7 @@ void addAsset(Layout& l, bool inputIsClosed) {
     r.levelCount = h.levelCount;
     r.listCount = l.listCount();
     r.tierCount = r.pageGroupCount = 1;
+    r.laidOutTiers = l.tierCount > 1 ? l.tierCount : 0;
     r.domainCount = uint32_t(l.domains.sets.size());
     r.patchCount = h.patchCount();
     r.partCount = l.parts.partCount();
@@ -214,8 +220,9 @@ void addFaceLists(Layout& l) {
 void addDomains(Layout& l) {
     std::vector<DomainRecord> records;
     std::vector<uint32_t> domainPatches, patchDomains;
-    for (const std::vector<uint32_t>& set : l.domains.sets) {
-        records.push_back({uint32_t(domainPatches.size()), uint32_t(set.size()), 0, 0});
+    for (size_t d = 0; d < l.domains.sets.size(); ++d) {
+        const std::vector<uint32_t>& set = l.domains.sets[d];
+        records.push_back({uint32_t(domainPatches.size()), uint32_t(set.size()), 0, l.domains.tiers[d]});
         domainPatches.insert(domainPatches.end(), set.begin(), set.end());
     }
     for (const std::vector<uint32_t>& list : l.domains.ofPatch) {
@@ -352,11 +359,16 @@ Status checkOpens(std::span<const std::byte> bytes) {
 } // namespace
 
 Status layOutAsset(const Mesh& mesh, const Segmentation& parts, const Hierarchy& hierarchy, const PatchErrors& errors,
-                   bool inputIsClosed, std::string_view provenance, std::vector<std::byte>& out) {
+                   bool inputIsClosed, std::string_view provenance, std::vector<std::byte>& out, uint32_t tierCount) {
     if (Status s = checkInput(mesh, parts, hierarchy, errors); !s.ok()) return s;
     Layout l{mesh, parts, hierarchy, errors};
-    l.domains = orderDomains(hierarchy, usedWedges(mesh, hierarchy));
-    l.faces = orderFaces(mesh, hierarchy);
+    const std::vector<uint8_t> used = usedWedges(mesh, hierarchy);
+    Tiers tiers;
+    if (tierCount > 1) tiers = findTiers(hierarchy, used, kTierRatio, tierCount);
+    const Tiers* pages = tierCount > 1 ? &tiers : nullptr;
+    l.tierCount = pages ? tiers.count() : 1;
+    l.domains = orderDomains(hierarchy, used, pages);
+    l.faces = orderFaces(mesh, hierarchy, pages);
     l.rows = orderRows(mesh, hierarchy, l.domains, l.faces);
     if (Status s = checkLimits(l); !s.ok()) return s;
     l.slots = numberSlots(hierarchy, l.domains, l.faces, l.rows);

@@ -11,10 +11,21 @@
 
 namespace xgc::bake::layout {
 
+/// Vertices by the levels to which they, or any that collapse into them, live.
+struct Tiers {
+    std::vector<uint8_t> of;           ///< a position each; 0: the coarsest
+    std::vector<uint32_t> firstLevels; ///< a tier each, falling to 0: from there on vertices of finer tiers are gone
+    uint32_t count() const { return uint32_t(firstLevels.size()); }
+};
+/// One vertex in `ratio` lives on into the next coarser tier.
+Tiers findTiers(const Hierarchy& hierarchy, const std::vector<uint8_t>& used, uint32_t ratio, uint32_t mostTiers);
+
 /// Domains of two patches or more in the file's order, each cut into up to four by the levels to which its vertices
-/// live. A domain of one patch has its rows in that patch's interior.
+/// live, or by the tiers of the pages. A domain of one patch has its rows in that patch's interior, but for those of
+/// coarser pages.
 struct Domains {
     std::vector<std::vector<uint32_t>> sets; ///< equal ones where a domain is cut
+    std::vector<uint8_t> tiers;              ///< of the pages
     /// Per position its *group*: an index in `sets`, or sets.size() + patch. kNone where no face uses it.
     std::vector<uint32_t> groupOf;
     std::vector<std::vector<uint32_t>> ofPatch; ///< rising
@@ -22,7 +33,7 @@ struct Domains {
 
 /// Wedges that a corner of a face, or a parent up from one, refers to: 1, else 0.
 std::vector<uint8_t> usedWedges(const Mesh& mesh, const Hierarchy& hierarchy);
-Domains orderDomains(const Hierarchy& hierarchy, const std::vector<uint8_t>& used);
+Domains orderDomains(const Hierarchy& hierarchy, const std::vector<uint8_t>& used, const Tiers* pages);
 
 /// What a patch draws in the uniform state of a level, in order.
 struct FacesOfLevel {
@@ -38,7 +49,8 @@ struct Faces {
     std::vector<uint32_t> levelFaceCounts;        ///< triangles of the uniform states
     std::vector<uint32_t> patchFaceCounts;        ///< patch * levelCount + level: likewise
 };
-Faces orderFaces(const Mesh& mesh, const Hierarchy& hierarchy);
+/// A list begins where each tier of `pages` does, if there are any.
+Faces orderFaces(const Mesh& mesh, const Hierarchy& hierarchy, const Tiers* pages);
 
 /// Vertex rows group by group.
 struct Rows {
@@ -112,7 +124,9 @@ public:
     /// What a codec made of a section or stream of another file; its figures but codec and stored bytes stay.
     void codedSection(const format::SectionRecord& record, format::Codec codec, std::span<const std::byte> stored);
     void codedStream(const format::StreamRecord& record, format::Codec codec, std::span<const std::byte> stored);
-    /// Sections and streams may come in any order; empty ones are left out.
+    /// Streams belong to the page that was begun last; where none was, to one with all levels.
+    void beginPage(uint32_t tier, uint32_t group, uint32_t firstLevel, uint32_t lastLevel);
+    /// Sections, and streams of a page, may come in any order; empty ones are left out.
     void finish(uint32_t levelCount, std::vector<std::byte>& out);
 
 private:
@@ -123,13 +137,17 @@ private:
     struct Stream {
         format::StreamRecord record;
         std::vector<std::byte> bytes;
+        size_t page;
     };
+    size_t page() const { return pages_.empty() ? 0 : pages_.size() - 1; }
+    std::vector<format::StreamRecord> placeStreams();
     void addSection(format::SectionId id, std::span<const std::byte> bytes, uint32_t count, uint32_t stride);
     void addStream(format::StreamKind kind, format::StreamFormat format, uint32_t set, std::span<const std::byte> bytes,
                    uint32_t count, uint32_t stride);
 
     std::vector<Section> sections_;
     std::vector<Stream> streams_;
+    std::vector<format::PageRecord> pages_;
 };
 
 /// Adds the streams that a renderer uploads.

@@ -111,8 +111,9 @@ private:
 /// Lists of one patch after the other.
 class Lists {
 public:
-    Lists(const Mesh& mesh, const Hierarchy& h, Faces& out)
+    Lists(const Mesh& mesh, const Hierarchy& h, const Tiers* pages, Faces& out)
         : mesh_(mesh), h_(h), uniform_(h), cache_(h.wedgePosition.size()), out_(out) {
+        for (uint32_t t = 0; pages && t < pages->count(); ++t) edges_.push_back(pages->firstLevels[t]);
         out.firstFace = {0};
         out.lists.resize(h.patches.size());
         out.levelFaceCounts.assign(h.levelCount, 0);
@@ -130,8 +131,10 @@ public:
             out_.levelFaceCounts[level] += uint32_t(triangles_.size());
             out_.patchFaceCounts.push_back(uint32_t(triangles_.size()));
             const size_t listed = out_.lists[patch].back().triangles.size();
-            if (triangles_.size() * kListRatio > listed || listed <= kSmallList) continue;
-            if (out_.lists[patch].size() == format::kMaxFaceLists) continue;
+            const bool isEdge = level > 0 && std::find(edges_.begin(), edges_.end(), level) != edges_.end();
+            const bool isShort = triangles_.size() * kListRatio <= listed && listed > kSmallList;
+            const size_t free = format::kMaxFaceLists - out_.lists[patch].size();
+            if (!isEdge && (!isShort || free <= edges_.size())) continue;
             cache_.order(triangles_, order_);
             begin(patch, level);
         }
@@ -151,17 +154,18 @@ private:
     const Uniform uniform_;
     CacheOrder cache_;
     Faces& out_;
+    std::vector<uint32_t> edges_; ///< levels at which tiers begin
     std::vector<glm::uvec3> triangles_;
     std::vector<uint32_t> order_;
 };
 
 } // namespace
 
-Faces orderFaces(const Mesh& mesh, const Hierarchy& h) {
+Faces orderFaces(const Mesh& mesh, const Hierarchy& h, const Tiers* pages) {
     std::vector<std::vector<uint32_t>> facesOf(h.patches.size());
     for (uint32_t f = 0; f < h.facePatch.size(); ++f) facesOf[h.facePatch[f]].push_back(f);
     Faces faces;
-    Lists lists(mesh, h, faces);
+    Lists lists(mesh, h, pages, faces);
     for (uint32_t p = 0; p < facesOf.size(); ++p) lists.addPatch(p, facesOf[p]);
     return faces;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <tuple>
 
 namespace xgc::bake::layout {
 namespace {
@@ -39,7 +40,7 @@ void FileBuilder::addStream(StreamKind kind, StreamFormat format, uint32_t set, 
                             uint32_t count, uint32_t stride) {
     if (bytes.empty()) return;
     const StreamRecord record = {kind, format, set, Codec::none, 0, bytes.size(), bytes.size(), 0, count, stride, {}};
-    streams_.push_back({record, {bytes.begin(), bytes.end()}});
+    streams_.push_back({record, {bytes.begin(), bytes.end()}, page()});
 }
 
 void FileBuilder::codedSection(const SectionRecord& record, Codec codec, std::span<const std::byte> stored) {
@@ -54,28 +55,40 @@ void FileBuilder::codedStream(const StreamRecord& record, Codec codec, std::span
     StreamRecord r = record;
     r.codec = codec;
     r.storedBytes = stored.size();
-    streams_.push_back({r, {stored.begin(), stored.end()}});
+    streams_.push_back({r, {stored.begin(), stored.end()}, page()});
+}
+
+void FileBuilder::beginPage(uint32_t tier, uint32_t group, uint32_t firstLevel, uint32_t lastLevel) {
+    PageRecord page = {};
+    page.tier = tier;
+    page.group = group;
+    page.firstLevel = firstLevel;
+    page.lastLevel = lastLevel;
+    pages_.push_back(page);
+}
+
+/// Gives streams their places within their pages, and pages their sizes and streams.
+std::vector<StreamRecord> FileBuilder::placeStreams() {
+    std::sort(streams_.begin(), streams_.end(), [](const Stream& a, const Stream& b) {
+        return std::tuple(a.page, a.record.kind, a.record.set) < std::tuple(b.page, b.record.kind, b.record.set);
+    });
+    std::vector<StreamRecord> table;
+    for (Stream& s : streams_) {
+        PageRecord& page = pages_[s.page];
+        if (page.streamCount++ == 0) page.firstStream = uint32_t(table.size());
+        s.record.offset = page.storedBytes;
+        page.storedBytes = alignUp(page.storedBytes + s.record.storedBytes);
+        page.rawBytes = alignUp(page.rawBytes + s.record.rawBytes);
+        table.push_back(s.record);
+    }
+    return table;
 }
 
 void FileBuilder::finish(uint32_t levelCount, std::vector<std::byte>& out) {
-    std::sort(streams_.begin(), streams_.end(), [](const Stream& a, const Stream& b) {
-        return std::pair(a.record.kind, a.record.set) < std::pair(b.record.kind, b.record.set);
-    });
-    uint64_t pageBytes = 0, rawBytes = 0;
-    std::vector<StreamRecord> streamTable;
-    for (Stream& s : streams_) {
-        s.record.offset = pageBytes;
-        pageBytes = alignUp(pageBytes + s.record.storedBytes);
-        rawBytes = alignUp(rawBytes + s.record.rawBytes);
-        streamTable.push_back(s.record);
-    }
+    if (pages_.empty()) beginPage(0, 0, 0, levelCount - 1);
+    const std::vector<StreamRecord> streamTable = placeStreams();
     // The page table is a section itself: its place must be known before its contents.
-    PageRecord page = {};
-    page.lastLevel = levelCount - 1;
-    page.storedBytes = pageBytes;
-    page.rawBytes = rawBytes;
-    page.streamCount = uint32_t(streamTable.size());
-    section<PageRecord>(SectionId::pages, std::span(&page, 1));
+    section<PageRecord>(SectionId::pages, pages_);
     section<StreamRecord>(SectionId::streams, streamTable);
     std::sort(sections_.begin(), sections_.end(),
               [](const Section& a, const Section& b) { return a.record.id < b.record.id; });
@@ -91,16 +104,19 @@ void FileBuilder::finish(uint32_t levelCount, std::vector<std::byte>& out) {
     header.version = kVersion;
     header.sectionCount = uint32_t(sections_.size());
     header.tableBytes = alignUp(end);
-    header.fileBytes = header.tableBytes + pageBytes;
-
+    header.fileBytes = header.tableBytes;
+    for (PageRecord& page : pages_) {
+        page.offset = header.fileBytes;
+        header.fileBytes += page.storedBytes;
+    }
     out.assign(header.fileBytes, std::byte(0));
-    page.offset = header.tableBytes;
-    for (const Stream& s : streams_) put(out, page.offset + s.record.offset, s.bytes);
-    page.checksum = hash(std::span(out).subspan(page.offset));
+    for (const Stream& s : streams_) put(out, pages_[s.page].offset + s.record.offset, s.bytes);
+    for (PageRecord& page : pages_) page.checksum = hash(std::span(out).subspan(page.offset, page.storedBytes));
     uint64_t at = sizeof header;
     for (Section& s : sections_) {
         if (s.record.id == SectionId::pages) {
-            s.bytes.assign(bytesOf(page).begin(), bytesOf(page).end());
+            const std::span<const std::byte> pages = std::as_bytes(std::span(pages_));
+            s.bytes.assign(pages.begin(), pages.end());
             s.record.checksum = hash(s.bytes);
         }
         put(out, s.record.offset, s.bytes);

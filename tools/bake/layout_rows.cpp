@@ -16,7 +16,8 @@
 //   one tier      [ a: ##..... | b: #.... | c: ##...... | ... ]                       # : alive at a coarse level
 //   two tiers     [ a: ## | b: # | c: ## | ... ]  [ a: ..... | b: .... | c: ...... | ... ]
 //
-// To a reader each piece is a domain, of the same patches.
+// To a reader each piece is a domain, of the same patches. Files that are cut into pages are cut by their tiers, and so
+// are the interiors: the pieces of coarser tiers are domains of one patch.
 
 namespace xgc::bake::layout {
 namespace {
@@ -92,26 +93,31 @@ std::vector<uint8_t> lastLevels(const Hierarchy& h, const std::vector<uint8_t>& 
     return last;
 }
 
-/// For each position its tier, 0 the coarsest: half the vertices of a tier live on into the next coarser one.
-std::vector<uint8_t> findTiers(const Hierarchy& h, const std::vector<uint8_t>& used) {
-    constexpr uint32_t kRatio = 2, kMostTiers = 4;
+} // namespace
+
+Tiers findTiers(const Hierarchy& h, const std::vector<uint8_t>& used, uint32_t ratio, uint32_t mostTiers) {
     std::vector<uint8_t> tiers = lastLevels(h, used);
+    std::vector<uint32_t> firstLevels = {0};
     std::array<uint32_t, 256> dying{};
     for (uint32_t w = 0; w < used.size(); ++w) dying[tiers[h.wedgePosition[w]]] += used[w];
     uint32_t alive = std::accumulate(dying.begin(), dying.end(), 0u), atCut = alive;
     std::array<uint8_t, 256> tierOf{}; // the finest is 0 here
     uint8_t tier = 0;
     for (uint32_t level = 1; level < dying.size(); ++level) {
-        if (uint64_t(alive) * kRatio <= atCut && tier + 1u < kMostTiers) {
+        if (alive > 0 && uint64_t(alive) * ratio <= atCut && tier + 1u < mostTiers) {
             ++tier;
+            firstLevels.push_back(level - 1); // where only those that live longer are left
             atCut = alive;
         }
         tierOf[level] = tier;
         alive -= dying[level];
     }
     for (uint8_t& t : tiers) t = uint8_t(tier - tierOf[t]);
-    return tiers;
+    std::reverse(firstLevels.begin(), firstLevels.end());
+    return {std::move(tiers), std::move(firstLevels)};
 }
+
+namespace {
 
 /// The rows of a domain in one tier, in the file's order.
 struct TierOfDomain {
@@ -136,9 +142,12 @@ std::vector<uint8_t> usedWedges(const Mesh& mesh, const Hierarchy& h) {
     return used;
 }
 
-Domains orderDomains(const Hierarchy& h, const std::vector<uint8_t>& used) {
-    const std::vector<uint8_t> tiers = findTiers(h, used);
-    const auto isShared = [&](uint32_t p) { return h.domainPatches[h.domain[p]].size() > 1; };
+Domains orderDomains(const Hierarchy& h, const std::vector<uint8_t>& used, const Tiers* pages) {
+    const std::vector<uint8_t> tiers = pages ? pages->of : findTiers(h, used, 2, 4).of;
+    // What a patch has of its own is its interior; where there are pages, in the last tier alone.
+    const auto isShared = [&](uint32_t p) {
+        return h.domainPatches[h.domain[p]].size() > 1 || (pages && tiers[p] + 1u < pages->count());
+    };
     std::vector<TierOfDomain> all;
     std::vector<uint32_t> positions; // that are used
     std::vector<uint8_t> seen(h.positions.size(), 0);
@@ -152,7 +161,10 @@ Domains orderDomains(const Hierarchy& h, const std::vector<uint8_t>& used) {
     all.erase(std::unique(all.begin(), all.end()), all.end());
 
     Domains domains;
-    for (const TierOfDomain& d : all) domains.sets.push_back(*d.patches);
+    for (const TierOfDomain& d : all) {
+        domains.sets.push_back(*d.patches);
+        domains.tiers.push_back(pages ? d.tier : 0);
+    }
     domains.groupOf.assign(h.positions.size(), kNone);
     for (const uint32_t p : positions) {
         const std::vector<uint32_t>& set = h.domainPatches[h.domain[p]];

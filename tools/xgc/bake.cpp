@@ -25,7 +25,7 @@ struct BakeArguments {
     std::string preset = "default", placement = "subset", curvature = "trace", normals = "keep", importanceColor;
     std::vector<std::string> lockedParts, importances;
     PartOptions parts;
-    uint32_t jobs = 0;
+    uint32_t jobs = 0, pageKilobytes = 64;
     bool quiet = false, verbose = false;
     bake::BakeOptions options;
 };
@@ -173,6 +173,7 @@ bake::Status runBake(BakeArguments& arguments) {
     {
         Progress progress(arguments.quiet);
         options.progress = [&](const char* stage, double fraction) { progress.show(stage, fraction); };
+        options.pages.pageBytes = arguments.pageKilobytes * 1024;
         status = bake::bake(options, report);
     }
     const bool graded = status.ok() || status.outcome == bake::Outcome::promiseBroken;
@@ -228,6 +229,12 @@ void addBake(CLI::App& app, Run& run) {
     bake->add_option("--weld", arguments->options.weld.tolerance, "Grid spacing of the weld, mesh units; 0: exact")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
+    bake->add_option(
+            "--tiers", arguments->options.pages.tiers,
+            "cut the file into pages for streaming, in so many tiers of levels (1: one page; 4 is a good start)")
+        ->check(CLI::Range(1u, format::kMaxTiers));
+    bake->add_option("--page-kb", arguments->pageKilobytes, "with --tiers: about so large a page, uncompressed")
+        ->check(CLI::Range(1u, 1u << 20));
     bake->add_flag("--compress", arguments->options.compress,
                    "Compress the file: a third of the size, decoded by xgc::load; without it, it can be mapped");
     bake->add_option(

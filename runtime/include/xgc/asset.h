@@ -5,6 +5,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <string_view>
@@ -19,6 +20,21 @@ struct VertexStream {
     uint32_t stride = 0;
     uint32_t count = 0;
     std::span<const std::byte> bytes;
+};
+
+/// Where the parents and the corners lie that one tier of a patch adds (residency.h).
+struct PatchPlace {
+    const std::byte* parents = nullptr; ///< u16 or u32, of `firstSlot` and on
+    const std::byte* corners = nullptr; ///< likewise, of the lists of the tier's levels
+    uint32_t firstSlot = 0;
+};
+
+/// How much of a streamed asset is in memory; changes between frames (residency.h).
+struct Residence {
+    std::span<const PatchPlace> places;    ///< patch * tierCount + tier
+    std::span<const uint8_t> tierCounts;   ///< a patch each: tiers of it that can be read
+    std::span<const uint8_t> finestLevels; ///< a patch each: no state may have it finer
+    std::span<const uint32_t> stamps;      ///< a patch each: another one where its index lists may name other rows
 };
 
 /// An opened asset: spans into the bytes that were opened, which must outlive it. Copying it copies
@@ -51,7 +67,9 @@ struct AssetView {
     std::string_view strings;
     std::span<const format::PageRecord> pages;
     std::span<const format::StreamRecord> streams;
-    std::string_view provenance; ///< JSON; empty where the file has none
+    std::span<const uint32_t> patchPages;                ///< patch * tierCount + tier; empty where there is one tier
+    std::array<uint8_t, format::kMaxTiers> tierLevels{}; ///< finest level of each tier, falling to 0
+    std::string_view provenance;                         ///< JSON; empty where the file has none
 
     // Filled when pages are installed (`openAll`).
     std::span<const glm::vec3> positions;    ///< a vertex row each
@@ -64,9 +82,21 @@ struct AssetView {
     std::array<VertexStream, kMaxVertexStreams> vertexStreams; ///< what a renderer uploads, position first
     uint32_t vertexStreamCount = 0;
 
+    /// Of a Residency's view, where rows are those of its pool; else null.
+    const Residence* residence = nullptr;
+
     uint32_t levelCount() const { return record->levelCount; }
     uint32_t patchCount() const { return record->patchCount; }
     std::string_view text(format::Text t) const { return strings.substr(t.offset, t.bytes); }
+    uint32_t tierCount() const { return record->tierCount; }
+    /// The tier whose pages a level needs, with those of the tiers before it.
+    uint32_t tierOf(uint32_t level) const {
+        uint32_t tier = 0;
+        while (tier + 1 < record->tierCount && level < tierLevels[tier]) ++tier;
+        return tier;
+    }
+    /// Finest level at which a patch may be in a state: 0 but in streamed assets.
+    uint32_t finestLevel(uint32_t patch) const { return residence ? residence->finestLevels[patch] : 0; }
     /// E of a patch at a level, mesh units.
     float error(uint32_t patch, uint32_t level) const {
         return patchErrors[size_t(patch) * record->levelCount + level];
@@ -94,7 +124,7 @@ struct AssetView {
         if (contours.empty()) return {};
         return contours.subspan(parts[part].firstNeighbour, parts[part].neighbourCount);
     }
-    /// Vertex rows of a domain, and of a patch's interior (version 2: one tier).
+    /// Vertex rows of a domain, and of a patch's interior.
     format::VertexRange domainRange(uint32_t domain) const { return vertexRanges[domain]; }
     format::VertexRange interiorRange(uint32_t patch) const {
         return vertexRanges[size_t(record->domainCount) + patch];
@@ -111,7 +141,8 @@ struct AssetView {
 Status openTables(std::span<const std::byte> bytes, AssetView& out);
 
 /// `openTables`, and checks and installs every page, in place. `bytes` is the whole uncompressed
-/// file. Same contract.
+/// file, of one tier: those that are cut into pages are streamed (residency.h), or joined by `xgc::decode`. Same
+/// contract.
 Status openAll(std::span<const std::byte> bytes, AssetView& out);
 
 } // namespace xgc

@@ -45,9 +45,9 @@ enum class SectionId : uint32_t {
     skins = 67,
     locks = 68,
     provenance = 69,      ///< UTF-8 JSON: settings, hash of the input, version of the tool (written by version 2)
-    patchTiers = 70,      ///< per patch and tier after the first: its firsts and counts in that tier's pages
     partShapes = 71,      ///< PartShape[partCount]
     patchFaceCounts = 72, ///< u32[patchCount * levelCount]: triangles of a patch in the uniform state of a level
+    patchPages = 73,      ///< u32[patchCount * tierCount]: the page of each patch and tier; in files of several tiers
 };
 
 /// How a section or stream lies in the file (FORMAT.md, "Codecs"). `open` reads none alone; xgc::load decodes the
@@ -91,10 +91,10 @@ enum AssetFlags : uint32_t {
 };
 
 struct AssetRecord {
-    uint32_t levelCount; ///< K + 1
-    uint32_t listCount;  ///< face lists of a patch, those that it leaves empty included
-    uint32_t tierCount;
-    uint32_t pageGroupCount;
+    uint32_t levelCount;     ///< K + 1
+    uint32_t listCount;      ///< face lists of a patch, those that it leaves empty included
+    uint32_t tierCount;      ///< 1: one page with everything; more: a file for streaming
+    uint32_t pageGroupCount; ///< 1, or the pages of the tier that has most
     uint32_t domainCount;
     uint32_t patchCount;
     uint32_t partCount;
@@ -111,8 +111,9 @@ struct AssetRecord {
     float boundsMax[3];
     float sphereCenter[3];
     float sphereRadius;
-    float positionStep; ///< positions of level 0 are the input's, snapped to multiples of it; 0: as they were
-    uint32_t reserved[5];
+    float positionStep;    ///< positions of level 0 are the input's, snapped to multiples of it; 0: as they were
+    uint32_t laidOutTiers; ///< 0, or the tiers that the domains tell of and that the file is, or may be, cut into
+    uint32_t reserved[4];
 };
 static_assert(sizeof(AssetRecord) == 128);
 
@@ -127,8 +128,8 @@ static_assert(sizeof(LevelRecord) == 16);
 struct DomainRecord {
     uint32_t firstPatch; ///< in domainPatches
     uint32_t patchCount; ///< at least 1; version 2 keeps rows of one patch in its interior and writes 2 or more
-    uint32_t pageGroup;  ///< whose pages hold its rows
-    uint32_t reserved;
+    uint32_t pageGroup;  ///< 0
+    uint32_t tier;       ///< of its rows; interiors are of the last one. Never falls from domain to domain
 };
 static_assert(sizeof(DomainRecord) == 16);
 
@@ -154,9 +155,9 @@ struct PatchRecord {
     uint32_t listedFaceCount; ///< of all its face lists together
     uint32_t firstCorner;     ///< in the narrow or wide corner stream, three a listed face
     uint32_t firstParent;     ///< in the narrow or wide parent stream, one a slot
-    uint32_t pageGroup;
-    uint32_t flags;  ///< PatchFlags
-    float boxMin[3]; ///< contains the patch in every state, mesh space
+    uint32_t pageGroup;       ///< 0
+    uint32_t flags;           ///< PatchFlags
+    float boxMin[3];          ///< contains the patch in every state, mesh space
     float boxMax[3];
     float sphereCenter[3]; ///< likewise
     float sphereRadius;
@@ -237,11 +238,11 @@ struct NodeRecord {
 };
 static_assert(sizeof(NodeRecord) == 80);
 
-/// A run of bytes that is loaded as a whole: a range of levels (tier 0 is the coarsest) of a group
-/// of patches. Version 2 writes one page with everything.
+/// A run of bytes that is loaded as a whole: what a range of levels (tier 0 is the coarsest) adds to a group of
+/// patches. Files of one tier have one page with everything.
 struct PageRecord {
     uint32_t tier;
-    uint32_t group;
+    uint32_t group;      ///< counts the pages of the tier
     uint32_t firstLevel; ///< finest level that it serves
     uint32_t lastLevel;  ///< coarsest
     uint64_t offset;
@@ -296,7 +297,7 @@ struct StreamRecord {
     uint64_t offset; ///< from the start of the page
     uint64_t storedBytes;
     uint64_t rawBytes;
-    uint32_t firstElement; ///< rows, slots or faces before it in coarser pages
+    uint32_t firstElement; ///< 0
     uint32_t count;
     uint32_t stride;
     uint32_t reserved[3];

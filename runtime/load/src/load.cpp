@@ -1,4 +1,5 @@
 #include "decode.h"
+#include "join.h"
 #include "xxh64.h"
 
 #include <xgc/load.h>
@@ -346,6 +347,7 @@ Status decodeAll(const Directory& d, std::span<std::byte> scratch, std::span<std
 } // namespace
 
 Status decodedSize(std::span<const std::byte> file, DecodedSize& out) {
+    if (isCut(file)) return joinedSize(file, out);
     Directory d;
     if (Status s = readDirectory(file, d); !s.ok()) return s;
     out = {imageBytes(d), d.isCompressed ? scratchBytes(d) : 0, d.isCompressed};
@@ -353,6 +355,7 @@ Status decodedSize(std::span<const std::byte> file, DecodedSize& out) {
 }
 
 Status decode(std::span<const std::byte> file, std::span<std::byte> scratch, std::span<std::byte> image) {
+    if (isCut(file)) return join(file, scratch, image);
     Directory d;
     if (Status s = readDirectory(file, d); !s.ok()) return s;
     if (image.size() < imageBytes(d) || !isAligned(image, kAlignment))

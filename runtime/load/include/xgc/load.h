@@ -1,13 +1,9 @@
 #pragma once
 
-#include <xgc/status.h>
+#include <xgc/asset.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
-
-/// Decodes compressed `.xgc` files (`xgc bake --compress`): a file becomes the image that `openAll` opens. Files that
-/// are not compressed need none of this: they are opened, or mapped, where they lie.
+/// Decodes compressed `.xgc` files (`xgc bake --compress`) and joins those that are cut into pages (`--tiers`): a file
+/// becomes the image that `openAll` opens. Other files need none of this: they are opened, or mapped, where they lie.
 ///
 ///     xgc::DecodedSize size;
 ///     if (xgc::Status s = xgc::decodedSize(file, size); !s.ok()) return fail(s.message, s.element);
@@ -22,7 +18,7 @@ namespace xgc {
 struct DecodedSize {
     uint64_t imageBytes = 0;   ///< of the decoded file
     uint64_t scratchBytes = 0; ///< that `decode` needs beside it; free to go afterwards
-    bool isCompressed = false; ///< false: `openAll` takes the file as it is
+    bool isCompressed = false; ///< or cut into pages; false: `openAll` takes the file as it is
 };
 
 /// How large the buffers for `decode` must be. `file` holds a whole file, aligned to format::kAlignment; compressed or
@@ -35,5 +31,10 @@ Status decodedSize(std::span<const std::byte> file, DecodedSize& out);
 /// bytes of the file are, nothing outside the two buffers is written; what is decoded is checked by `openAll`, as for
 /// any file. On failure both buffers hold bytes of no meaning.
 Status decode(std::span<const std::byte> file, std::span<std::byte> scratch, std::span<std::byte> image);
+
+/// Decodes one page of a file that is cut into pages, as a Residency's reader must where the file is compressed; copies
+/// what is not. `stored`: the page's storedBytes, whose checksum is tested; `out`: its rawBytes, aligned to 64.
+/// Allocates as `decode`.
+Status decodePage(const AssetView& tables, uint32_t page, std::span<const std::byte> stored, std::span<std::byte> out);
 
 } // namespace xgc

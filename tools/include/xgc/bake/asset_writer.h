@@ -17,9 +17,11 @@ struct PatchErrors {
 };
 
 /// Lays an asset out as runtime/FORMAT.md says: the bytes of an `.xgc` file, uncompressed. The same input gives
-/// the same bytes on any machine. `provenance` is stored as it is (JSON).
+/// the same bytes on any machine. `provenance` is stored as it is (JSON). With a `tierCount` above 1 rows and face
+/// lists are laid out so that cutIntoPages (pages.h) finds up to so many tiers; the file is opened as any other.
 Status layOutAsset(const Mesh& mesh, const Segmentation& parts, const Hierarchy& hierarchy, const PatchErrors& errors,
-                   bool inputIsClosed, std::string_view provenance, std::vector<std::byte>& out);
+                   bool inputIsClosed, std::string_view provenance, std::vector<std::byte>& out,
+                   uint32_t tierCount = 1);
 
 /// Writes bytes beside the target and renames, so that the target is whole or untouched.
 Status writeFileAtomically(const std::filesystem::path& file, std::span<const std::byte> bytes);

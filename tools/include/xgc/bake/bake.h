@@ -6,6 +6,7 @@
 #include <xgc/bake/default_hierarchy.h>
 #include <xgc/bake/floor.h>
 #include <xgc/bake/mesh.h>
+#include <xgc/bake/pages.h>
 #include <xgc/bake/perceptual.h>
 #include <xgc/bake/segment.h>
 #include <xgc/bake/thesis_hierarchy.h>
@@ -57,6 +58,7 @@ struct BakeOptions {
     RoundingOptions rounding;
     bool compress = false; ///< false: the file can be mapped and opened where it lies
     CompressOptions compression;
+    PageOptions pages;       ///< of more than one tier: the file is for streaming, and `compress` compresses its pages
     bool strict = false;     ///< a warning among the verdicts fails the bake before it writes
     uint32_t rmsSamples = 0; ///< points each way by which the report's RMS of each level is measured; 0: it is not
     /// Told a stage's name and finished fraction, on the calling thread.
