@@ -171,6 +171,49 @@ TEST_CASE("without culling, controls and hysteresis a selection is what select g
     }
 }
 
+TEST_CASE("a view that asks for the same again chooses what it would choose otherwise, to the bit") {
+    Stage stage;
+    const AssetView& asset = torus().view;
+    const uint32_t asset0 = stage.add(asset);
+    Random random(21);
+    std::vector<uint32_t> ids;
+    for (int i = 0; i < 12; ++i) ids.push_back(stage.place(asset0, random.placement(9)));
+    Selection asksAnew;
+    REQUIRE(asksAnew.create(stage.config).ok());
+    uint64_t kept = 0, changed = 0, culled = 0;
+    glm::vec3 eye(0, 0, 30);
+    SelectionDesc desc;
+    for (int i = 0; i < 1500; ++i) {
+        // Small steps, and leaps now and then; something else asked for, now and then.
+        eye = i % 97 == 0 ? random.point(40) : eye + random.point(i % 2 ? 0.5f : 0.02f);
+        if (i % 150 == 0) {
+            desc.pixels = i % 600 == 450 ? 0 : random.between(0.2f, 3);
+            desc.hysteresis = i % 300 == 0 ? 0.0f : 0.1f;
+            desc.cullBackfaces = i % 450 != 0;
+        }
+        if (i % 31 == 0) stage.scene.setPlacement(ids[random.below(12)], random.placement(9));
+        if (i % 53 == 0) REQUIRE(stage.scene.setPart(ids[0], random.below(36), {.importance = 2}).ok());
+        if (i % 53 == 26) stage.scene.clearParts(ids[0]);
+        desc.view = viewFrom(eye);
+        stage.selection.update(stage.scene, desc);
+        desc.view.nearest = i % 2 ? 1e-30f : 0.0f; // another wish, and nothing that it changes
+        asksAnew.update(stage.scene, desc);
+        for (const uint32_t id : ids) {
+            REQUIRE(stage.selection.kind(id) == asksAnew.kind(id));
+            REQUIRE(levelsOf(stage, stage.selection, id) == levelsOf(stage, asksAnew, id));
+            if (asksAnew.kind(id) != InstanceKind::mixed) continue;
+            const std::span<const uint8_t> one = stage.selection.visible(id), other = asksAnew.visible(id);
+            REQUIRE(std::equal(one.begin(), one.end(), other.begin(), other.end()));
+        }
+        kept += stage.selection.stats().consideredPatches - stage.selection.stats().changedPatches;
+        changed += stage.selection.stats().changedPatches;
+        culled += stage.selection.stats().culledPatches;
+    }
+    CHECK(kept > 100000);
+    CHECK(changed > 1000);
+    CHECK(culled > 500);
+}
+
 TEST_CASE("with error-pixels P no patch projects to more than P, near or far, whatever happened before") {
     Stage stage;
     const AssetView& asset = torus().view;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "level_test.h"
-#include "scene.h"
 
 #include <xgc/selection.h>
 

@@ -39,7 +39,7 @@ Scene& Scene::operator=(Scene&&) noexcept = default;
 bool Scene::Impl::allocate() {
     return assets.allocate(config.assetCapacity) &&
            patchRanges.create(config.assetPatchCapacity, config.assetCapacity) &&
-           patches.allocate(config.assetPatchCapacity) &&
+           patches.allocate(config.assetPatchCapacity) && lanes.allocate(config.assetPatchCapacity) &&
            wholeErrors.allocate(size_t(config.assetCapacity) * kMaxWholeStates) &&
            wholeTriangles.allocate(wholeErrors.size()) && levelScratch.allocate(config.assetPatchCapacity) &&
            instances.allocate(config.instanceCapacity) &&
@@ -82,6 +82,7 @@ void Scene::Impl::fillTables(uint32_t id) {
     const AssetView& asset = *stored.desc.asset;
     for (uint32_t p = 0; p < asset.patchCount(); ++p) {
         patches[stored.firstPatch + p] = boundsOf(asset, asset.patches[p]);
+        lanes.set(stored.firstPatch + p, patches[stored.firstPatch + p]);
     }
     fillWholeErrors(id);
     const std::span<uint8_t> levels(levelScratch.data(), asset.patchCount());

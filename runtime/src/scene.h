@@ -1,6 +1,7 @@
 #pragma once
 
 #include "memory.h"
+#include "patch_lanes.h"
 #include "range_allocator.h"
 
 #include <xgc/scene.h>
@@ -40,6 +41,7 @@ struct Scene::Impl : Allocated<Scene::Impl> {
     uint32_t freeAsset = format::kNone;
     RangeAllocator patchRanges;
     FixedArray<PatchBounds> patches;
+    PatchLaneArrays lanes; ///< of them
     // asset * kMaxWholeStates + state:
     FixedArray<float> wholeErrors;
     FixedArray<uint32_t> wholeTriangles;

@@ -39,7 +39,7 @@ Selection& Selection::operator=(Selection&&) noexcept = default;
 bool Selection::Impl::allocate() {
     return instances.allocate(config.instanceCapacity) && wanted.allocate(config.patchCapacity) &&
            levels.allocate(config.patchCapacity) && visible.allocate(config.patchCapacity) &&
-           fractions.allocate(config.patchCapacity) &&
+           fractions.allocate(config.patchCapacity) && keptLevels.allocate(config.patchCapacity) &&
            chunks.allocate((size_t(config.instanceCapacity) + kChunk - 1) / kChunk);
 }
 
@@ -53,7 +53,17 @@ Status Selection::create(const SceneConfig& config) {
     return {};
 }
 
+/// But for the eye, and what is culled.
+bool asksForTheSame(const SelectionDesc& a, const SelectionDesc& b) {
+    return a.policy == b.policy && a.pixels == b.pixels && a.hysteresis == b.hysteresis &&
+           a.triangleBudget == b.triangleBudget && a.view.orthographic == b.view.orthographic &&
+           a.view.pixelsPerUnit == b.view.pixelsPerUnit && a.view.nearest == b.view.nearest;
+}
+
 void Selection::Impl::begin(const Scene& of, const SelectionDesc& wish) {
+    const bool same = scene == &of.impl() && asksForTheSame(desc, wish);
+    if (!same) ++epoch;
+    steadyPolicy = same && wish.policy == Policy::errorPixels && !wish.view.orthographic && wish.triangleBudget == 0;
     scene = &of.impl();
     desc = wish;
     assert(scene->config.instanceCapacity <= config.instanceCapacity && "a selection for a smaller scene");
@@ -127,6 +137,7 @@ void Selection::Impl::decideWhole(const Subject& s) {
         s.own.inBelt = !s.own.whole && beyond(inner * keep, at);
     }
     if (s.own.whole && !was) s.own.wholeState = uint8_t(kNoLevel);
+    if (!s.own.whole && (was || s.own.fresh)) s.own.keptEpoch = 0;
     if (!s.own.whole && was && s.own.wholeState != kNoLevel) {
         scene->wholeLevels(s.instance.asset, s.own.wholeState, s.wanted);
     } else if (!s.own.whole && (was || s.own.fresh)) {
@@ -199,6 +210,7 @@ void Selection::Impl::chooseWhole(const Subject& s, ChunkCount& count) {
 }
 
 void Selection::Impl::chooseMixed(const Subject& s, ChunkCount& count) {
+    s.own.keptEpoch = 0;
     const MeshEye eye = desc.cullBackfaces ? meshEye(desc.view, s.instance.placement) : MeshEye{};
     const uint32_t coarsest = s.asset.levelCount() - 1;
     const bool mayCoarsen = !s.own.inBelt || desc.triangleBudget > 0;
@@ -236,6 +248,7 @@ float Selection::Impl::nextLambda(const Subject& s, uint32_t patch, bool glides)
 void Selection::Impl::chooseContinuous(const Subject& s, ChunkCount& count) {
     const MeshEye eye = desc.cullBackfaces ? meshEye(desc.view, s.instance.placement) : MeshEye{};
     const bool glides = s.own.morphs;
+    s.own.keptEpoch = 0;
     s.own.morphs = true;
     count.stats.consideredPatches += uint32_t(s.patches.size());
     for (uint32_t p = 0; p < s.patches.size(); ++p) {
@@ -257,6 +270,8 @@ void Selection::Impl::choose(uint32_t id, ChunkCount& count) {
     if (s.own.whole) chooseWhole(s, count);
     if (s.own.kind == InstanceKind::mixed && desc.morph) {
         chooseContinuous(s, count);
+    } else if (s.own.kind == InstanceKind::mixed && isSteady(s)) {
+        chooseSteady(s, count);
     } else if (s.own.kind == InstanceKind::mixed) {
         chooseMixed(s, count);
     }
@@ -306,6 +321,7 @@ void Selection::set(const Scene& scene, uint32_t id, Levels levels, std::span<co
     s.own.kind = s.instance.visible ? InstanceKind::mixed : InstanceKind::culled;
     s.own.whole = false;
     s.own.fresh = false;
+    s.own.keptEpoch = 0;
     s.own.morphs = !own.empty();
     assert(own.empty() || own.size() == levels.size());
     std::copy(own.begin(), own.end(), s.fractions.begin());

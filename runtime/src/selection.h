@@ -2,6 +2,7 @@
 
 #include "culling.h"
 #include "level_choice.h"
+#include "scene.h"
 
 #include <xgc/selection.h>
 
@@ -16,6 +17,15 @@ struct ViewInstance {
     uint8_t wholeState = kNoLevel; ///< kept while whole
     bool inBelt = false;           ///< mixed, but near where it would be whole
     bool morphs = false;           ///< has fractions, since it came into sight
+    // What its patches' KeptLevels hold for.
+    uint32_t keptEpoch = 0; ///< 0: nothing
+    float keptScale = 0;
+    bool keptInBelt = false;
+};
+
+/// Squared distances, from the first and below the second, at which a patch surely keeps its level.
+struct KeptLevel {
+    float from = 0, before = 0;
 };
 
 /// What a pass over some instances counted; cache lines of their own for threads.
@@ -29,10 +39,11 @@ struct Selection::Impl : Allocated<Selection::Impl> {
 
     SceneConfig config;
     FixedArray<ViewInstance> instances;
-    FixedArray<uint8_t> wanted;  ///< by slot: the policy's own level, kNoLevel before the first
-    FixedArray<uint8_t> levels;  ///< by slot: after controls, reference and culling
-    FixedArray<uint8_t> visible; ///< by slot
-    FixedArray<float> fractions; ///< by slot: of instances that morph
+    FixedArray<uint8_t> wanted;       ///< by slot: the policy's own level, kNoLevel before the first
+    FixedArray<uint8_t> levels;       ///< by slot: after controls, reference and culling
+    FixedArray<uint8_t> visible;      ///< by slot
+    FixedArray<float> fractions;      ///< by slot: of instances that morph
+    FixedArray<KeptLevel> keptLevels; ///< by slot
     FixedArray<ChunkCount> chunks;
     SelectionStats stats;
 
@@ -40,6 +51,8 @@ struct Selection::Impl : Allocated<Selection::Impl> {
     const Scene::Impl* scene = nullptr;
     SelectionDesc desc;
     LevelPolicy policy;
+    uint32_t epoch = 1;        ///< rises where the policy asks for something else than before, the eye aside
+    bool steadyPolicy = false; ///< it does not, and KeptLevels know its kind
 
     bool allocate();
 
@@ -76,6 +89,9 @@ struct Selection::Impl : Allocated<Selection::Impl> {
     void chooseWhole(const Subject& s, ChunkCount& count);
     void chooseMixed(const Subject& s, ChunkCount& count);
     void chooseContinuous(const Subject& s, ChunkCount& count);
+    bool isSteady(const Subject& s) const;
+    KeptLevel keptLevel(const LevelTest& test, uint32_t level, bool mayCoarsen) const;
+    void chooseSteady(const Subject& s, ChunkCount& count);
     void choose(uint32_t id, ChunkCount& count);
 
     // Budgets (budget.cpp).
