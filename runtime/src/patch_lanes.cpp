@@ -37,12 +37,13 @@ void distancesSquared(const PatchLanes& lanes, uint32_t count, const Placement& 
     }
 }
 
-void conesTurnedAway(const PatchLanes& lanes, uint32_t count, const MeshEye& eye, uint8_t* out) {
+void conesTurnedAway(const PatchLanes& lanes, uint32_t count, const MeshEye& eye, uint32_t* out) {
+    const glm::vec3 from = eye.point;
     for (uint32_t i = 0; i < count; ++i) {
-        const float x = lanes.x[i] - eye.point.x, y = lanes.y[i] - eye.point.y, z = lanes.z[i] - eye.point.z;
+        const float x = lanes.x[i] - from.x, y = lanes.y[i] - from.y, z = lanes.z[i] - from.z;
         const float along = x * lanes.axisX[i] + y * lanes.axisY[i] + z * lanes.axisZ[i] - lanes.radius[i];
         const float least = lanes.sineSquared[i] * (x * x + y * y + z * z);
-        out[i] = uint8_t(uint32_t(along > 0) & uint32_t(along * along >= least));
+        out[i] = uint32_t(along > 0) & uint32_t(along * along >= least);
     }
 }
 

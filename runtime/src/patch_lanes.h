@@ -40,7 +40,7 @@ inline constexpr uint32_t kLaneBlock = 64;
 void distancesSquared(const PatchLanes& lanes, uint32_t count, const Placement& placement, const View& view,
                       float* out);
 
-/// 1 where the cone of a patch looks away from the eye: `turnedAway`.
-void conesTurnedAway(const PatchLanes& lanes, uint32_t count, const MeshEye& eye, uint8_t* out);
+/// 1 where the cone of a patch looks away from the eye, else 0: `turnedAway`.
+void conesTurnedAway(const PatchLanes& lanes, uint32_t count, const MeshEye& eye, uint32_t* out);
 
 } // namespace xgc

@@ -39,7 +39,8 @@ Selection& Selection::operator=(Selection&&) noexcept = default;
 bool Selection::Impl::allocate() {
     return instances.allocate(config.instanceCapacity) && wanted.allocate(config.patchCapacity) &&
            levels.allocate(config.patchCapacity) && visible.allocate(config.patchCapacity) &&
-           fractions.allocate(config.patchCapacity) && keptLevels.allocate(config.patchCapacity) &&
+           fractions.allocate(config.patchCapacity) && keptFrom.allocate(config.patchCapacity) &&
+           keptBefore.allocate(config.patchCapacity) &&
            chunks.allocate((size_t(config.instanceCapacity) + kChunk - 1) / kChunk);
 }
 

@@ -39,11 +39,11 @@ struct Selection::Impl : Allocated<Selection::Impl> {
 
     SceneConfig config;
     FixedArray<ViewInstance> instances;
-    FixedArray<uint8_t> wanted;       ///< by slot: the policy's own level, kNoLevel before the first
-    FixedArray<uint8_t> levels;       ///< by slot: after controls, reference and culling
-    FixedArray<uint8_t> visible;      ///< by slot
-    FixedArray<float> fractions;      ///< by slot: of instances that morph
-    FixedArray<KeptLevel> keptLevels; ///< by slot
+    FixedArray<uint8_t> wanted;             ///< by slot: the policy's own level, kNoLevel before the first
+    FixedArray<uint8_t> levels;             ///< by slot: after controls, reference and culling
+    FixedArray<uint8_t> visible;            ///< by slot
+    FixedArray<float> fractions;            ///< by slot: of instances that morph
+    FixedArray<float> keptFrom, keptBefore; ///< by slot: KeptLevel
     FixedArray<ChunkCount> chunks;
     SelectionStats stats;
 
@@ -91,6 +91,10 @@ struct Selection::Impl : Allocated<Selection::Impl> {
     void chooseContinuous(const Subject& s, ChunkCount& count);
     bool isSteady(const Subject& s) const;
     KeptLevel keptLevel(const LevelTest& test, uint32_t level, bool mayCoarsen) const;
+    struct Block;
+    void forgetKept(const Subject& s);
+    void chooseAnew(const Subject& s, const Block& block);
+    void takeLevels(const Subject& s, const Block& block, const MeshEye& eye, ChunkCount& count);
     void chooseSteady(const Subject& s, ChunkCount& count);
     void choose(uint32_t id, ChunkCount& count);
 

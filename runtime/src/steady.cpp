@@ -1,6 +1,8 @@
 #include "patch_lanes.h"
 #include "selection.h"
 
+#include <algorithm>
+#include <array>
 #include <limits>
 
 // Most patches keep their level from one frame to the next. While a view asks for the same, each patch has an interval
@@ -45,52 +47,95 @@ bool Selection::Impl::isSteady(const Subject& s) const {
     return steadyPolicy && s.controls.empty() && !s.reference;
 }
 
-void Selection::Impl::chooseSteady(const Subject& s, ChunkCount& count) {
-    const bool mayCoarsen = !s.own.inBelt;
-    const float scale = s.instance.placement.maxScale;
-    KeptLevel* kept = keptLevels.data() + s.instance.firstSlot;
-    const auto patchCount = uint32_t(s.patches.size());
-    if (s.own.keptEpoch != epoch || s.own.keptScale != scale || s.own.keptInBelt != s.own.inBelt) {
-        std::fill_n(kept, patchCount, KeptLevel{kInfinity, 0});
-        s.own.keptEpoch = epoch;
-        s.own.keptScale = scale;
-        s.own.keptInBelt = s.own.inBelt;
-    }
-    const MeshEye eye = desc.cullBackfaces ? meshEye(desc.view, s.instance.placement) : MeshEye{};
-    const PatchLanes all = scene->lanes.lanes().from(s.stored.firstPatch);
-    const uint32_t coarsest = s.asset.levelCount() - 1;
+void Selection::Impl::forgetKept(const Subject& s) {
+    s.own.keptEpoch = epoch;
+    s.own.keptScale = s.instance.placement.maxScale;
+    s.own.keptInBelt = s.own.inBelt;
+    std::fill_n(keptFrom.data() + s.instance.firstSlot, s.patches.size(), kInfinity);
+}
+
+/// What a block of patches keeps, in the arrays of the view. Pointers of their own: a byte that is written could be any
+/// of theirs, for all that a compiler knows of members.
+struct Selection::Impl::Block {
+    uint8_t *wanted, *levels, *visible;
+    float *from, *before;
+    uint32_t first, count;
+};
+
+/// Asks the policy for the patches that may not keep their level.
+void Selection::Impl::chooseAnew(const Subject& s, const Block& block) {
     std::array<float, kLaneBlock> distance;
-    std::array<uint8_t, kLaneBlock> away{};
-    uint32_t culled = 0, changed = 0;
+    std::array<uint32_t, kLaneBlock> moved;
+    const PatchLanes lanes = scene->lanes.lanes().from(s.stored.firstPatch + block.first);
+    distancesSquared(lanes, block.count, s.instance.placement, desc.view, distance.data());
+    uint32_t any = 0;
+    for (uint32_t i = 0; i < block.count; ++i) {
+        moved[i] = 1 ^ (uint32_t(distance[i] >= block.from[i]) & uint32_t(distance[i] < block.before[i]));
+        any |= moved[i];
+    }
+    if (!any) return;
+    for (uint32_t i = 0; i < block.count; ++i) {
+        if (!moved[i] || !block.visible[i]) continue;
+        const LevelTest test = s.patchTest(policy, block.first + i);
+        const uint32_t level = test.next(block.wanted[i], !s.own.inBelt);
+        const KeptLevel kept = keptLevel(test, level, !s.own.inBelt);
+        block.wanted[i] = uint8_t(level);
+        block.from[i] = kept.from;
+        block.before[i] = kept.before;
+    }
+}
+
+/// Takes the policy's levels over, and culls what is turned away. Without branches, byte by byte.
+void Selection::Impl::takeLevels(const Subject& s, const Block& block, const MeshEye& eye, ChunkCount& count) {
+    const PatchLanes lanes = scene->lanes.lanes().from(s.stored.firstPatch + block.first);
+    const uint32_t n = block.count;
+    std::array<uint32_t, kLaneBlock> turned{};
+    std::array<uint8_t, kLaneBlock> away, changed;
+    if (eye.valid) conesTurnedAway(lanes, n, eye, turned.data());
+    for (uint32_t i = 0; i < n; ++i) away[i] = uint8_t(turned[i]);
+    const auto coarsest = uint8_t(s.asset.levelCount() - 1);
+    const uint8_t* const wantedLevels = block.wanted;
+    const uint8_t* const coneLevels = lanes.coneLevel;
+    uint8_t* const shown = block.visible;
+    uint8_t* const standing = block.levels;
+    for (uint32_t i = 0; i < n; ++i) {
+        const uint8_t own = wantedLevels[i], cone = coneLevels[i];
+        const uint8_t back = uint8_t(away[i] & uint8_t(own <= cone)); // surely turned away
+        const uint8_t inSight = back ? std::min(cone, coarsest) : own;
+        const uint8_t level = shown[i] ? inSight : coarsest;
+        shown[i] = uint8_t(shown[i] & (back ^ 1));
+        changed[i] = uint8_t(standing[i] != level);
+        standing[i] = level;
+    }
+    uint32_t culledCount = 0, changedCount = 0;
+    for (uint32_t i = 0; i < n; ++i) {
+        culledCount += block.visible[i] ^ 1u;
+        changedCount += changed[i];
+    }
+    count.stats.culledPatches += culledCount;
+    count.stats.changedPatches += changedCount;
+}
+
+void Selection::Impl::chooseSteady(const Subject& s, ChunkCount& count) {
+    const bool known = s.own.keptEpoch == epoch && s.own.keptScale == s.instance.placement.maxScale &&
+                       s.own.keptInBelt == s.own.inBelt;
+    if (!known) forgetKept(s);
+    const MeshEye eye = desc.cullBackfaces ? meshEye(desc.view, s.instance.placement) : MeshEye{};
+    const auto patchCount = uint32_t(s.patches.size());
     for (uint32_t first = 0; first < patchCount; first += kLaneBlock) {
-        const PatchLanes lanes = all.from(first);
-        const uint32_t n = std::min(kLaneBlock, patchCount - first);
-        distancesSquared(lanes, n, s.instance.placement, desc.view, distance.data());
-        if (eye.valid) conesTurnedAway(lanes, n, eye, away.data());
-        for (uint32_t i = 0; i < n; ++i) {
-            const uint32_t p = first + i;
-            uint32_t level = coarsest;
-            if (s.visible[p]) {
-                level = s.wanted[p];
-                if (!(distance[i] >= kept[p].from && distance[i] < kept[p].before)) {
-                    const LevelTest test = s.patchTest(policy, p);
-                    level = test.next(level, mayCoarsen);
-                    s.wanted[p] = uint8_t(level);
-                    kept[p] = keptLevel(test, level, mayCoarsen);
-                }
-                if (away[i] && level <= lanes.coneLevel[i]) {
-                    s.visible[p] = 0;
-                    level = std::min<uint32_t>(lanes.coneLevel[i], coarsest);
-                }
-            }
-            culled += !s.visible[p];
-            changed += s.levels[p] != level;
-            s.levels[p] = uint8_t(level);
-        }
+        float* from = keptFrom.data() + s.instance.firstSlot + first;
+        float* before = keptBefore.data() + s.instance.firstSlot + first;
+        const Block block{s.wanted.data() + first,
+                          s.levels.data() + first,
+                          s.visible.data() + first,
+                          from,
+                          before,
+                          first,
+                          std::min(kLaneBlock, patchCount - first)};
+        chooseAnew(s, block);
+        takeLevels(s, block, eye, count);
     }
     count.stats.consideredPatches += patchCount;
-    count.stats.culledPatches += culled;
-    count.stats.changedPatches += changed;
 }
 
 } // namespace xgc
