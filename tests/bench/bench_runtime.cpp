@@ -4,5 +4,5 @@
 /// Without arguments: every section.
 int main(int argc, char** argv) {
     using namespace xgc::bench;
-    return runSections(argc, argv, {{"crowd", benchCrowd}, {"view", benchView}});
+    return runSections(argc, argv, {{"crowd", benchCrowd}, {"view", benchView}, {"far", benchFar}});
 }

@@ -10,5 +10,7 @@ namespace xgc::bench {
 int benchCrowd(const Flags& flags);
 /// Triangles and bytes along flights: one level for a mesh, a level a part, a level a patch.
 int benchView(const Flags& flags);
+/// Triangles of far instances beside another program's at equal deviation.
+int benchFar(const Flags& flags);
 
 } // namespace xgc::bench
