@@ -29,11 +29,10 @@
 namespace xgc {
 namespace {
 
-/// Representatives of the slots of a range, the first of which is `firstSlot`.
+/// Representatives of the slots of a range, the first of which is `firstSlot`. `parents`: theirs.
 template <typename Slot>
 void resolve(const Slot* parents, uint32_t firstSlot, uint32_t alive, format::VertexRange range, uint32_t* rep) {
     uint32_t* own = rep + firstSlot;
-    parents += firstSlot;
     for (size_t k = 0; k < alive; ++k) own[k] = range.first + uint32_t(k);
     for (size_t k = alive; k < range.count; ++k) own[k] = rep[parents[k]];
 }
@@ -53,6 +52,16 @@ ListedFaces listFor(const AssetView& asset, uint32_t patch, uint32_t least) {
         found = {lists[i].level, found.first + found.count, lists[i].faceCount};
     }
     return found;
+}
+
+/// Faces of the lists before it that are of the same tier.
+uint32_t facesBefore(const AssetView& asset, uint32_t patch, const ListedFaces& list) {
+    uint32_t count = 0;
+    for (const format::FaceList& other : asset.listsOf(patch)) {
+        if (other.level >= list.level) break;
+        if (asset.tierOf(other.level) == asset.tierOf(list.level)) count += other.faceCount;
+    }
+    return count;
 }
 
 /// The finest level among the patch's own and those of its domains.
@@ -77,7 +86,7 @@ DomainStates resolveDomains(const AssetView& asset, uint32_t patch, Levels level
         const format::VertexRange range = asset.domainRange(domain);
         const uint32_t level = own == 0 ? 0 : domainLevel(asset, domain, levels);
         const uint32_t alive = level == 0 ? range.count : aliveCount(asset, range, level);
-        resolve(parents, states.slotCount, alive, range, rep);
+        resolve(parents + states.slotCount, states.slotCount, alive, range, rep);
         states.slotCount += range.count;
         states.leastLevel = std::min(states.leastLevel, level);
         if (alive < range.count) states.coarsestMoved = std::max(states.coarsestMoved, level);
@@ -151,12 +160,44 @@ uint32_t build(const AssetView& asset, uint32_t patch, Levels levels, const Slot
 
     const format::VertexRange interior = asset.interiorRange(patch);
     const uint32_t named = aliveCount(asset, interior, list.level), alive = aliveCount(asset, interior, level);
-    resolve(parents, firstInterior, alive, {interior.first, named}, rep);
+    resolve(parents + firstInterior, firstInterior, alive, {interior.first, named}, rep);
 
     corners += 3 * size_t(list.first);
     if (alive < named || domains.coarsestMoved > list.level) return emitSolid(corners, list.count, rep, out);
     emitAll(corners, 3 * size_t(list.count), firstInterior, interior.first - firstInterior, rep, out);
     return 3 * list.count;
+}
+
+/// A patch of a streamed asset, tier by tier, as far as it is there: no state that it allows names more.
+template <typename Slot>
+uint32_t buildResident(const AssetView& asset, uint32_t patch, Levels levels, uint32_t* rep, uint32_t* out) {
+    const uint32_t tierCount = asset.tierCount(), tiers = asset.residence->tierCounts[patch];
+    const format::PatchRecord& record = asset.patches[patch];
+    const PatchPlace* places = asset.residence->places.data() + size_t(patch) * tierCount;
+    const std::span<const uint32_t> domains = asset.domainsOf(patch), firsts = asset.domainSlotsOf(patch);
+    const auto parentsOf = [&](uint32_t tier, uint32_t slot) {
+        return reinterpret_cast<const Slot*>(places[tier].parents) + (slot - places[tier].firstSlot);
+    };
+    uint32_t least = levels[patch];
+    for (size_t i = 0; i < domains.size(); ++i) {
+        const uint32_t level = domainLevel(asset, domains[i], levels), tier = asset.domains[domains[i]].tier;
+        least = std::min(least, level);
+        const format::VertexRange range = asset.domainRange(domains[i]);
+        if (tier >= tiers || range.count == 0) continue;
+        resolve(parentsOf(tier, firsts[i]), firsts[i], aliveCount(asset, range, level), range, rep);
+    }
+    const ListedFaces list = listFor(asset, patch, least);
+    const uint32_t tier = asset.tierOf(list.level);
+    assert(tier < tiers && "a level finer than AssetView::finestLevel");
+    if (tier >= tiers || list.count == 0) return 0;
+    const format::VertexRange interior = asset.interiorRange(patch);
+    if (tiers == tierCount && interior.count > 0) {
+        const uint32_t named = aliveCount(asset, interior, list.level), first = record.slotCount - interior.count;
+        resolve(parentsOf(tierCount - 1, first), first, aliveCount(asset, interior, levels[patch]),
+                {interior.first, named}, rep);
+    }
+    const Slot* corners = reinterpret_cast<const Slot*>(places[tier].corners);
+    return emitSolid(corners + 3 * size_t(facesBefore(asset, patch, list)), list.count, rep, out);
 }
 
 } // namespace
@@ -186,6 +227,11 @@ uint32_t buildIndices(const AssetView& asset, uint32_t patch, Levels levels, std
     assert(levels.size() >= asset.patchCount());
     assert(scratch.size() >= record.slotCount);
     assert(out.size() >= indexCapacity(asset, patch, levels));
+    if (asset.residence) {
+        return record.flags & format::kWideSlots
+                   ? buildResident<uint32_t>(asset, patch, levels, scratch.data(), out.data())
+                   : buildResident<uint16_t>(asset, patch, levels, scratch.data(), out.data());
+    }
     if (record.flags & format::kWideSlots) {
         return build(asset, patch, levels, asset.parentsWide.data() + record.firstParent,
                      asset.cornersWide.data() + record.firstCorner, scratch.data(), out.data());

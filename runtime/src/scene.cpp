@@ -86,11 +86,15 @@ void Scene::Impl::fillTables(uint32_t id) {
     }
     fillWholeErrors(id);
     const std::span<uint8_t> levels(levelScratch.data(), asset.patchCount());
+    assets[id].firstWhole = 0;
     for (uint32_t state = 0; state < stored.wholeStateCount; ++state) {
         wholeLevels(id, state, levels);
         uint32_t triangles = 0;
         for (uint32_t p = 0; p < asset.patchCount(); ++p) triangles += triangleBound(asset, p, levels);
         wholeTriangles[size_t(id) * kMaxWholeStates + state] = triangles;
+        // Of a streamed asset, states in which it needs its first pages alone.
+        const auto streamed = [&](uint8_t level) { return asset.residence && asset.tierOf(level) > 0; };
+        if (std::any_of(levels.begin(), levels.end(), streamed)) assets[id].firstWhole = state + 1;
     }
 }
 

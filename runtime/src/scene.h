@@ -17,6 +17,7 @@ struct SceneAsset {
     uint32_t firstPatch = 0; ///< in Scene::Impl::patches
     uint32_t instanceCount = 0;
     uint32_t wholeStateCount = 0;
+    uint32_t firstWhole = 0; ///< the finest state in which instances may be whole
     uint32_t nextFree = format::kNone;
 };
 

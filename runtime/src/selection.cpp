@@ -137,6 +137,10 @@ void Selection::Impl::decideWhole(const Subject& s) {
         s.own.whole = beyond(was ? inner : outer, at);
         s.own.inBelt = !s.own.whole && beyond(inner * keep, at);
     }
+    if (s.own.whole && s.stored.firstWhole > 0) {
+        const LevelTest test = s.wholeTest(policy, *scene);
+        s.own.whole = s.stored.firstWhole < test.levelCount() && test.fits(s.stored.firstWhole, policy.middle);
+    }
     if (s.own.whole && !was) s.own.wholeState = uint8_t(kNoLevel);
     if (!s.own.whole && (was || s.own.fresh)) s.own.keptEpoch = 0;
     if (!s.own.whole && was && s.own.wholeState != kNoLevel) {
@@ -206,7 +210,7 @@ void Selection::Impl::chooseWhole(const Subject& s, ChunkCount& count) {
     if (s.reference && s.referenceOwn->wholeState != kNoLevel) {
         level = std::min<uint32_t>(level, s.referenceOwn->wholeState + desc.coarserThanReference);
     }
-    s.own.wholeState = uint8_t(level);
+    s.own.wholeState = uint8_t(std::max(level, s.stored.firstWhole));
     if (s.own.kind == InstanceKind::whole) ++count.stats.wholeInstances;
 }
 
@@ -222,7 +226,7 @@ void Selection::Impl::chooseMixed(const Subject& s, ChunkCount& count) {
         if (s.visible[p]) {
             const uint32_t own = s.patchTest(policy, p).next(s.wanted[p], mayCoarsen);
             s.wanted[p] = uint8_t(own);
-            level = withReference(s, p, s.controlled(p, own));
+            level = std::max(withReference(s, p, s.controlled(p, own)), s.asset.finestLevel(p));
             // Its cone holds at coneLevel and finer ones alone.
             if (level <= s.patches[p].coneLevel && turnedAway(eye, s.patches[p])) {
                 s.visible[p] = 0;
@@ -243,7 +247,8 @@ float Selection::Impl::nextLambda(const Subject& s, uint32_t patch, bool glides)
     if (!s.controls.empty()) lambda = steered(s.controls[s.patches[patch].part], lambda, s.asset.levelCount());
     lambda = continuousWithReference(s, patch, lambda);
     const float before = s.lambda(patch);
-    return glides ? std::clamp(lambda, before - desc.morphRate, before + desc.morphRate) : lambda;
+    if (glides) lambda = std::clamp(lambda, before - desc.morphRate, before + desc.morphRate);
+    return std::max(lambda, float(s.asset.finestLevel(patch)));
 }
 
 void Selection::Impl::chooseContinuous(const Subject& s, ChunkCount& count) {
@@ -326,7 +331,10 @@ void Selection::set(const Scene& scene, uint32_t id, Levels levels, std::span<co
     s.own.morphs = !own.empty();
     assert(own.empty() || own.size() == levels.size());
     std::copy(own.begin(), own.end(), s.fractions.begin());
-    std::copy(levels.begin(), levels.end(), s.levels.begin());
+    for (uint32_t p = 0; p < levels.size(); ++p) {
+        s.levels[p] = uint8_t(std::max<uint32_t>(levels[p], s.asset.finestLevel(p)));
+        if (s.levels[p] != levels[p] && !own.empty()) s.fractions[p] = 0;
+    }
     std::copy(levels.begin(), levels.end(), s.wanted.begin());
     for (uint32_t p = 0; p < levels.size(); ++p) s.visible[p] = !s.hidden(p);
 }

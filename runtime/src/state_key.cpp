@@ -22,6 +22,7 @@ uint32_t canonicalLevel(const AssetView& asset, format::VertexRange range, uint3
 
 size_t writePatchKey(uint32_t assetId, const AssetView& asset, uint32_t patch, Levels levels, std::byte* key) {
     std::byte* at = put(put(key, assetId), patch);
+    if (asset.residence) at = put(at, asset.residence->stamps[patch]);
     const std::span<const uint32_t> domains = asset.domainsOf(patch);
     if (levels[patch] == 0) { // and so are its domains
         std::memset(at, 0, 1 + domains.size());

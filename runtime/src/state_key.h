@@ -10,13 +10,14 @@ namespace xgc {
 // What names an index list, byte for byte: equal keys have equal triangles.
 //
 //   a patch         [ asset id: 4 | patch: 4    | level of its interior | level of each of its domains ]
+//   streamed        [ asset id: 4 | patch: 4    | stamp: 4 | likewise ]
 //   a whole asset   [ asset id: 4 | format::kNone | material: 4 | level ]
 //
 // A level is told as the lowest one at which the same vertices are alive: states that look alike have one key.
 
 /// Most bytes of a key of a patch with so many domains, and of a whole asset's.
 constexpr size_t stateKeyBytes(uint32_t domainCount) {
-    return std::max<size_t>(4 + 4 + 1 + size_t(domainCount), 4 + 4 + 4 + 1);
+    return 4 + 4 + 4 + 1 + size_t(domainCount);
 }
 
 /// Lowest level at which as many rows of the range are alive.

@@ -24,7 +24,8 @@ struct IndexRange {
 struct IndexCacheConfig {
     uint32_t arenaBytes = 64u << 20;
     uint32_t rangeCapacity = 65536; ///< states of patches that are kept at once
-    uint32_t keyBytes = 4u << 20; ///< for the names of those states: 9 bytes each and one for each domain of the patch
+    uint32_t keyBytes = 4u << 20;   ///< for the names of those states: 9 bytes each (13 of streamed assets) and one for
+                                    ///< each domain of the patch
     uint32_t assetCapacity = 64;
     uint32_t slotCapacity = 65536;           ///< largest scratchCapacity of the assets
     uint32_t faceCapacity = 131072;          ///< largest AssetRecord::maxPatchFaces of the assets

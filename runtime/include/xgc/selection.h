@@ -106,7 +106,8 @@ public:
     /// Chooses the levels for all instances.
     ///
     /// Promise of errorPixels: no drawn patch lies farther than stats().pixels on screen from the input's surface,
-    /// divided by its part's importance, but where a PartControl or a reference decides.
+    /// divided by its part's importance, but where a PartControl or a reference decides, or what a streamed asset
+    /// (residency.h) has not got yet.
     ///
     /// With `morph`, a patch at level l and fraction f has errors of (1 - f) E(l) + f E(l + 1) within the pixels: where
     /// f is 0 that is the promise above; between two levels the drawn surface lies between theirs, and its error is
@@ -116,7 +117,7 @@ public:
     /// near is coarser than asked for until it has caught up. Distances take a division and a square root here.
     void update(const Scene& scene, const SelectionDesc& desc);
     /// The host's own choice for an instance, in place of a policy's: `levels` of all its patches, and their fractions
-    /// where it is to morph. Until the next update.
+    /// where it is to morph; no finer than is there of a streamed asset. Until the next update.
     void set(const Scene& scene, uint32_t instance, Levels levels, std::span<const float> fractions = {});
 
     InstanceKind kind(uint32_t instance) const;
