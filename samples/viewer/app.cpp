@@ -1,13 +1,10 @@
 #include "app.h"
 
-#include "overlay.h"
-#include "panel.h"
+#include "app_units.h"
 #include "picking.h"
 #include "report.h"
-#include "uniform_level.h"
 
 #include <fmt/format.h>
-#include <imgui.h>
 
 #include <cstdio>
 #include <fstream>
@@ -17,17 +14,7 @@ namespace xgc::viewer {
 namespace {
 
 constexpr float kFixedSeconds = 1.0f / 60;
-constexpr float kPanelWidth = 316;
 constexpr auto kDoubleClick = std::chrono::milliseconds(350);
-
-bake::Status fromRuntime(const Status& status) {
-    if (status.ok()) return {};
-    return bake::systemError(fmt::format("{} ({})", status.message, int64_t(status.element)));
-}
-
-float milliseconds(std::chrono::steady_clock::duration d) {
-    return std::chrono::duration<float, std::milli>(d).count();
-}
 
 } // namespace
 
@@ -126,7 +113,7 @@ bake::Status App::takeLoaded() {
     bool changed = false;
     while (std::optional<Loader::Result> result = loader_.take()) {
         if (!result->status.ok()) {
-            if (fixedClock()) return result->status; // nobody is there to read a dialog
+            if (fixedClock() && frames_ == 0) return result->status; // nobody is there to read a dialog
             state_.errors.push_back(result->status.message);
             continue;
         }
@@ -196,6 +183,16 @@ void App::actOnParts() {
     state_.askPin = state_.askHide = state_.askReset = state_.askResetAll = state_.askShowAll = false;
 }
 
+/// The models' names, once they are all there.
+void App::updateTitle() {
+    std::string title = loader_.busy() ? "loading - " : "";
+    for (const auto& model : models_.all()) title += model->file.name + " - ";
+    title += "xgc-viewer";
+    if (title == title_) return;
+    title_ = title;
+    window_.setTitle(title_.c_str());
+}
+
 /// What keys and panel asked for.
 void App::act() {
     if (state_.askPick) pickAt(*state_.askPick);
@@ -238,6 +235,7 @@ bake::Status App::step(bool& running) {
     lastFrame_ = now;
     controls_.advance(state_, seconds);
     act();
+    updateTitle();
     const bool last = state_.askQuit || (fixedClock() && frames_ >= options_.frames);
     running = !last;
     if (!visible) return {};
@@ -261,108 +259,6 @@ bake::Status App::finish() {
         status = bake::writeFileAtomically(options_.report, std::as_bytes(std::span(text)));
     }
     return status;
-}
-
-// A frame -----------------------------------------------------------------------------------------------------------
-
-Area App::area() const {
-    uint32_t width = 0, height = 0;
-    window_.size(width, height);
-    const float panel = state_.showPanel ? std::min(kPanelWidth * state_.uiScale, 0.6f * float(width)) : 0;
-    return {std::floor(panel), 0, std::max(1.0f, float(width) - std::floor(panel)), std::max(1.0f, float(height))};
-}
-
-void App::buildInterface(float seconds) {
-    const Area view = area();
-    presenter_.interface().begin(presenter_.canvas().size(), seconds);
-    const LoadProgress progress = loader_.progress();
-    if (view.x > 0) buildPanel(state_, models_, drawn_, view.x, view.height);
-    buildOverlay(state_, models_.all().empty() && !progress.busy, view);
-    buildDialogs(state_, progress, view);
-    presenter_.interface().end();
-}
-
-void App::chooseLevels() {
-    const Clock::time_point before = Clock::now();
-    const SelectedFor view = selectedFor(state_, area());
-    renderer_.select(0, selectionFor(state_, view));
-    selectMs_ = milliseconds(Clock::now() - before);
-    if (!state_.split) return;
-    // The other side is one level for all: parts are steered there no more than that they are hidden.
-    models_.applyAll(renderer_, true);
-    renderer_.select(1, uniformSelectionFor(view, state_.measured.uniformLevel, bands_));
-    models_.applyAll(renderer_, false);
-}
-
-bake::Status App::recordScene(VkCommandBuffer cmd) {
-    const Area view = area();
-    const VkViewport viewport{view.x, view.y, view.width, view.height, 0, 1};
-    vkCmdSetViewport(cmd, 0, 1, &viewport);
-    const auto scissor = [&](float from, float to) {
-        const auto left = int32_t(view.x + from * view.width), right = int32_t(view.x + to * view.width);
-        const VkRect2D rect{{left, 0}, {uint32_t(std::max(0, right - left)), presenter_.canvas().size().height}};
-        vkCmdSetScissor(cmd, 0, 1, &rect);
-    };
-    const float splitAt = state_.split ? state_.splitAt : 1;
-    scissor(0, 1);
-    renderer_.recordBackground(cmd);
-    vulkan::ViewDesc desc = viewFor(state_, view, selectedFor(state_, view));
-    if (state_.selected) {
-        desc.highlightInstance = models_.all()[state_.selected->model]->instance.index;
-        desc.highlightPart = state_.selected->part;
-    }
-    scissor(0, splitAt);
-    Status status = renderer_.recordDraws(cmd, desc);
-    if (status.ok() && state_.split) {
-        scissor(splitAt, 1);
-        desc.view = 1;
-        status = renderer_.recordDraws(cmd, desc);
-    }
-    return fromRuntime(status);
-}
-
-bake::Status App::drawFrame(bool capture) {
-    VkCommandBuffer cmd = VK_NULL_HANDLE;
-    bake::Status status = presenter_.begin(cmd);
-    if (status.ok()) status = fromRuntime(renderer_.beginFrame());
-    if (!status.ok()) return status;
-    chooseLevels();
-    renderer_.endFrame();
-    renderer_.recordTransfers(cmd);
-    presenter_.canvas().beginScene(cmd);
-    status = recordScene(cmd);
-    presenter_.canvas().endScene(cmd);
-    if (!status.ok()) return status;
-    const VkSemaphoreSubmitInfo done = renderer_.frameDone();
-    status = presenter_.end(std::span(&done, 1), capture);
-    ++sinceRebuild_;
-    measure();
-    return status;
-}
-
-void App::measure() {
-    Measured& m = state_.measured;
-    drawn_ = models_.drawn(renderer_, 0);
-    const vulkan::FrameStats& stats = renderer_.stats();
-    const SelectionStats& chosen = renderer_.selection(0).stats();
-    m.triangles = renderer_.drawList(0).stats().triangles;
-    m.draws = uint32_t(renderer_.drawList(0).draws().size());
-    m.pixels = chosen.pixels;
-    m.overBudget = chosen.overBudget;
-    m.trianglesHistory.add(float(m.triangles));
-    m.uploadHistory.add(float(stats.uploadBytes));
-    m.changesHistory.add(float(renderer_.drawList(0).stats().changedPatches));
-    m.frameHistory.add(frameMs_);
-    m.selectHistory.add(selectMs_);
-    if (!state_.split) return;
-    uniform_ = models_.drawn(renderer_, 1);
-    const SelectedFor view = selectedFor(state_, area());
-    View seen = makeView(view.camera.eye, view.camera.fovY, view.height);
-    seen.nearest = view.camera.nearPlane;
-    m.worstPixels = worstErrorPixels(drawn_.assets, seen);
-    m.uniformWorstPixels = worstErrorPixels(uniform_.assets, seen);
-    m.uniformTriangles = renderer_.drawList(1).stats().triangles;
-    m.uniformLevel = uniformLevelWithin(drawn_.assets, m.triangles).level;
 }
 
 } // namespace xgc::viewer

@@ -36,6 +36,7 @@ private:
     void actOnParts();
     void pickAt(const glm::vec2& pixel);
     void freeze();
+    void updateTitle();
     bake::Status finish();
 
     // A frame.
@@ -65,6 +66,7 @@ private:
     uint32_t frames_ = 0;       ///< counted from when all files are there
     uint32_t sinceRebuild_ = 0; ///< frames
     uint32_t pictures_ = 0;     ///< that F12 wrote
+    std::string title_;
     Clock::time_point lastPick_{};
     Clock::time_point lastFrame_{};
     float selectMs_ = 0, frameMs_ = 0;

@@ -10,6 +10,8 @@
 namespace xgc::viewer {
 namespace {
 
+constexpr int64_t kMostFrames = 1'000'000'000;
+
 std::optional<int> keyNamed(const std::string& name) {
     if (name.size() == 1 && std::isalnum(static_cast<unsigned char>(name[0])))
         return std::toupper(static_cast<unsigned char>(name[0]));
@@ -90,9 +92,10 @@ bake::Status parseScript(const std::string& text, const std::string& name, std::
     for (size_t number = 1; std::getline(lines, line); ++number) {
         std::istringstream words(line.substr(0, line.find('#')));
         if ((words >> std::ws).eof()) continue;
-        uint32_t frame = 0;
+        int64_t frame = 0;
         std::string verb;
-        const bool read = bool(words >> frame >> verb) && parseLine(verb, words, frame, events);
+        const bool read = bool(words >> frame >> verb) && frame > 0 && frame <= kMostFrames &&
+                          parseLine(verb, words, uint32_t(frame), events);
         if (!read || !(words >> std::ws).eof()) {
             return bake::badInput(fmt::format(
                 "{}:{}: '{}' is no event: expected a frame and move, click, down, up, key, hold, release, wheel, "
@@ -100,7 +103,7 @@ bake::Status parseScript(const std::string& text, const std::string& name, std::
                 name, number, line));
         }
         if (frame < last) return bake::badInput(fmt::format("{}:{}: frame {} after {}", name, number, frame, last));
-        last = frame;
+        last = uint32_t(frame);
     }
     std::stable_sort(events.begin(), events.end(),
                      [](const ScriptedEvent& a, const ScriptedEvent& b) { return a.frame < b.frame; });
