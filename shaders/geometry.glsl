@@ -11,6 +11,7 @@ layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Dr
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Materials { MaterialRecord at[]; };
 layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer Words { uint at[]; };
 layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer Floats { float at[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Vectors { vec4 at[]; };
 
 layout(push_constant) uniform Push { PushConstants push; };
 

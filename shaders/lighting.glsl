@@ -24,6 +24,34 @@ vec3 seenNormal(vec3 toEye) {
     return dot(n, plane) < 0.0 ? -n : n;
 }
 
+float shadowTexel(ViewRecord view, ivec2 at) {
+    const ivec2 inside = clamp(at, ivec2(0), ivec2(int(view.shadowSize) - 1));
+    return Floats(view.shadow).at[uint(inside.y) * view.shadowSize + uint(inside.x)];
+}
+
+// How much of the sun reaches the surface: bilinear comparisons over five by five texels. The point steps off its own
+// surface along the normal, by more where light grazes it, so that no texel shadows itself.
+float sunlight(ViewRecord view, vec3 n) {
+    if (isNull(view.shadow)) return 1.0;
+    const float facing = clamp(dot(n, view.sun.xyz), 0.0, 1.0);
+    const vec3 off = inPosition + n * (view.sun.w * (1.0 + 3.0 * sqrt(1.0 - facing * facing)));
+    const vec4 clip = view.worldToShadow * vec4(off, 1);
+    const vec2 texel = (clip.xy / clip.w * 0.5 + 0.5) * float(view.shadowSize) - 0.5;
+    if (any(lessThan(texel, vec2(0))) || any(greaterThanEqual(texel, vec2(float(view.shadowSize) - 1.0)))) return 1.0;
+    const float depth = clip.z / clip.w;
+    const ivec2 first = ivec2(floor(texel));
+    const vec2 part = texel - vec2(first);
+    float lit = 0.0;
+    for (int y = -2; y <= 3; ++y) {
+        const float rowWeight = y == -2 ? 1.0 - part.y : y == 3 ? part.y : 1.0;
+        for (int x = -2; x <= 3; ++x) {
+            const float weight = rowWeight * (x == -2 ? 1.0 - part.x : x == 3 ? part.x : 1.0);
+            lit += shadowTexel(view, first + ivec2(x, y)) <= depth ? weight : 0.0;
+        }
+    }
+    return lit / 25.0;
+}
+
 struct Surface {
     vec3 albedo;
     vec3 emissive;
@@ -31,9 +59,23 @@ struct Surface {
     float roughness;
 };
 
+// Out of doors: sky, the ground's glow, and the sun with its shadows.
+vec3 lightOutdoors(Surface s, ViewRecord view, vec3 toEye, vec3 n) {
+    const float facing = max(dot(n, view.sun.xyz), 0.0);
+    const vec3 sun = view.sunColor.xyz * (facing > 0.0 ? sunlight(view, n) : 0.0);
+    const float up = dot(n, view.sky.xyz);
+    const vec3 ambient = mix(kGround, kSky, 0.5 + 0.5 * up) * 1.15;
+    const vec3 halfway = normalize(view.sun.xyz + toEye);
+    const float gloss = exp2(10.0 * (1.0 - s.roughness) + 2.0);
+    const float sheen = pow(max(dot(n, halfway), 0.0), gloss) * (gloss + 8.0) / 64.0 * facing;
+    const vec3 f0 = mix(vec3(0.04), s.albedo, s.metallic);
+    return s.albedo * (1.0 - 0.7 * s.metallic) * (ambient + sun * facing) + f0 * sun * sheen + s.emissive;
+}
+
 vec3 light(Surface s, ViewRecord view) {
     const vec3 toEye = normalize(view.eye.xyz - inPosition);
     const vec3 n = seenNormal(toEye);
+    if (view.sunColor.w != 0.0) return lightOutdoors(s, view, toEye, n);
     const vec3 key = normalize(-0.55 * view.right.xyz + 0.75 * view.up.xyz - 0.70 * view.forward.xyz);
     const vec3 fill = normalize(0.85 * view.right.xyz - 0.10 * view.up.xyz - 0.50 * view.forward.xyz);
     const vec3 rim = normalize(0.35 * view.right.xyz + 0.55 * view.up.xyz + 0.75 * view.forward.xyz);

@@ -36,6 +36,13 @@ struct ViewRecord {
     float linePixels;       ///< width of an edge's line
     uint highlightInstance; ///< or kNothing
     uint highlightPart;
+    // The sun and its shadows, where sunColor.w is not 0.
+    mat4 worldToShadow; ///< clip space of the shadow map
+    vec4 sun;           ///< xyz: unit, towards it; w: world units that a texel of the map covers
+    vec4 sunColor;      ///< linear, xyz
+    Address shadow;     ///< depths of the map, reversed, a float a texel, rows from the top
+    uint shadowSize;    ///< texels a side
+    uint reserved2;
 };
 
 /// An instance: where it stands and where its vertex streams lie. Address 0: the asset has none.
@@ -47,7 +54,14 @@ struct InstanceRecord {
     uint colorFormat;  ///< xgc::format::StreamFormat
     uint reserved;
     Address morphs; ///< xgc::MorphRow each row
-    float maxScale; ///< of toWorld
+    // Poses (xgc/skin.h).
+    Address joints[2];    ///< u16 x 4 each row: two sets
+    Address weights[2];   ///< float4 each row
+    Address pose;         ///< three vec4 each joint, the rows of its matrix; 0: no joint moves it
+    Address morphRows;    ///< a uint each row, and the end: of its displacements
+    Address morphDeltas;  ///< seven words each: target, position, normal
+    Address morphWeights; ///< a float a target; 0: no target moves it
+    float maxScale;       ///< of toWorld
     uint reserved1;
 };
 
@@ -69,7 +83,7 @@ struct MaterialRecord {
     float metallic;
     float roughness;
     uint flags;
-    uint reserved;
+    float alphaCutoff; ///< of alpha-tested ones: what is below is not there
 };
 
 /// Everything is found from here: no descriptors.
@@ -87,8 +101,8 @@ struct PushConstants {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(ViewRecord) == 176);
-static_assert(sizeof(InstanceRecord) == 96);
+static_assert(sizeof(ViewRecord) == 288);
+static_assert(sizeof(InstanceRecord) == 160);
 static_assert(sizeof(DrawRecord) == 32);
 static_assert(sizeof(MaterialRecord) == 48);
 static_assert(sizeof(PushConstants) == 72);

@@ -1,9 +1,9 @@
-// Shared by the indexed vertex stage and the one that fetches indices itself.
-layout(location = 0) out vec3 outPosition; // world
-layout(location = 1) out vec3 outNormal;   // world, zero where the asset has none
-layout(location = 2) out vec4 outColor;    // linear
-layout(location = 3) flat out uint outDraw;
-layout(location = 5) flat out vec2 outMarks; // error in world units; 1 where highlighted
+// Where a vertex stands: shared by all vertex stages, so that a depth-only pass and a shaded one put it at the same
+// place to the last bit. What a stage does not use of it, the compiler drops: a depth pass reads positions alone.
+invariant gl_Position;
+
+// Whether a draw's asset can be posed: others do not pay for it.
+layout(constant_id = 0) const bool kPosable = false;
 
 vec3 decodeOctahedral(uint packed) {
     const vec2 e = unpackSnorm2x16(packed);
@@ -51,8 +51,62 @@ void addWeighted(inout Vertex sum, float weight, Vertex v) {
     sum.color += weight * v.color;
 }
 
+// What the targets of a pose add to a row.
+void displace(InstanceRecord instance, uint row, inout vec3 position, inout vec3 normal) {
+    Words deltas = Words(instance.morphDeltas);
+    Floats weights = Floats(instance.morphWeights);
+    const uint end = Words(instance.morphRows).at[row + 1];
+    for (uint i = Words(instance.morphRows).at[row]; i < end; ++i) {
+        const uint first = 7 * i;
+        const float weight = weights.at[deltas.at[first]];
+        position += weight * vec3(uintBitsToFloat(deltas.at[first + 1]), uintBitsToFloat(deltas.at[first + 2]),
+                                  uintBitsToFloat(deltas.at[first + 3]));
+        normal += weight * vec3(uintBitsToFloat(deltas.at[first + 4]), uintBitsToFloat(deltas.at[first + 5]),
+                                uintBitsToFloat(deltas.at[first + 6]));
+    }
+}
+
+// The mean of the matrices of a row's joints, as rows.
+struct JointMean {
+    vec4 x, y, z;
+    float weight;
+};
+
+void addJoints(InstanceRecord instance, uint set, uint row, inout JointMean mean) {
+    if (isNull(instance.joints[set])) return;
+    Words joints = Words(instance.joints[set]);
+    Vectors pose = Vectors(instance.pose);
+    const vec4 weights = Vectors(instance.weights[set]).at[row];
+    const uint low = joints.at[2 * row], high = joints.at[2 * row + 1];
+    const uvec4 at = 3 * uvec4(low & 0xffff, low >> 16, high & 0xffff, high >> 16);
+    for (uint k = 0; k < 4; ++k) {
+        if (weights[k] == 0.0) continue;
+        mean.x += weights[k] * pose.at[at[k]];
+        mean.y += weights[k] * pose.at[at[k] + 1];
+        mean.z += weights[k] * pose.at[at[k] + 2];
+        mean.weight += weights[k];
+    }
+}
+
+void skin(InstanceRecord instance, uint row, inout vec3 position, inout vec3 normal) {
+    JointMean mean = JointMean(vec4(0), vec4(0), vec4(0), 0.0);
+    addJoints(instance, 0, row, mean);
+    addJoints(instance, 1, row, mean);
+    const vec4 p = vec4(position, 1);
+    position = vec3(dot(mean.x, p), dot(mean.y, p), dot(mean.z, p)) / mean.weight;
+    const vec3 a = mean.x.xyz, b = mean.y.xyz, c = mean.z.xyz;
+    normal = vec3(dot(cross(b, c), normal), dot(cross(c, a), normal), dot(cross(a, b), normal));
+}
+
+// A row where its pose puts it: xgc::posedPosition.
 Vertex fetchVertex(InstanceRecord instance, uint row) {
-    return Vertex(fetchPosition(instance, row), fetchNormal(instance, row), fetchColor(instance, row));
+    Vertex v = Vertex(fetchPosition(instance, row), fetchNormal(instance, row), fetchColor(instance, row));
+    const bool moved = kPosable && !isNull(instance.morphWeights), skinned = kPosable && !isNull(instance.pose);
+    if (moved) displace(instance, row, v.position, v.normal);
+    if (skinned) skin(instance, row, v.position, v.normal);
+    const float length2 = dot(v.normal, v.normal);
+    if ((moved || skinned) && length2 > 0.0) v.normal *= inversesqrt(length2);
+    return v;
 }
 
 // A geomorph, as xgc::morph does it on the CPU (xgc/morph.h). All patches that draw a row compute this from the same
@@ -88,18 +142,20 @@ Vertex vertexOf(InstanceRecord instance, uint id, uint row) {
     return firstLambda == kNoLambdas ? fetchVertex(instance, row) : fetchMorphed(instance, firstLambda, row);
 }
 
-void shadeVertex(uint row, uint draw, uint instanceInDraw) {
-    const uint id = Words(push.instanceIds).at[Draws(push.draws).at[draw].firstInstance + instanceInDraw];
+uint instanceOf(uint draw, uint instanceInDraw) {
+    return Words(push.instanceIds).at[Draws(push.draws).at[draw].firstInstance + instanceInDraw];
+}
+
+// The vertex of an instance in the world; writes gl_Position.
+Vertex placeVertex(uint row, uint id) {
     const InstanceRecord instance = Instances(push.instances).at[id];
-    const Vertex v = vertexOf(instance, id, row);
+    Vertex v = vertexOf(instance, id, row);
     const vec4 local = vec4(v.position, 1);
-    outPosition = vec3(dot(instance.toWorld[0], local), dot(instance.toWorld[1], local), dot(instance.toWorld[2], local));
-    outNormal = turnNormal(instance, v.normal);
-    outColor = v.color;
-    outDraw = draw;
-    const DrawRecord record = Draws(push.draws).at[draw];
-    ViewRecord view = Views(push.view).at;
-    const bool highlighted = id == view.highlightInstance && record.part == view.highlightPart;
-    outMarks = vec2(record.error * instance.maxScale, highlighted ? 1 : 0);
-    gl_Position = view.worldToClip * vec4(outPosition, 1);
+    precise const vec3 world =
+        vec3(dot(instance.toWorld[0], local), dot(instance.toWorld[1], local), dot(instance.toWorld[2], local));
+    precise const vec4 clip = Views(push.view).at.worldToClip * vec4(world, 1);
+    gl_Position = clip;
+    v.position = world;
+    v.normal = turnNormal(instance, v.normal);
+    return v;
 }

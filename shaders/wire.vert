@@ -4,7 +4,7 @@
 // The same triangles without an index buffer bound: each corner fetches its own index, and so knows which corner of its
 // triangle it is. The fragment stage draws the edges from that.
 #include "geometry.glsl"
-#include "vertex.glsl"
+#include "shaded_vertex.glsl"
 
 layout(location = 4) out vec3 outCorner;
 

@@ -30,7 +30,7 @@ uint64_t Selection::Impl::countInstance(uint32_t id, const LevelPolicy& at, Coun
         const uint32_t hint = s.own.wholeState == kNoLevel ? 0 : s.own.wholeState;
         return scene->trianglesOf(s.instance.asset, s.wholeTest(at, *scene).coarsest(at.loose, hint));
     }
-    const MeshEye eye = desc.cullBackfaces ? meshEye(desc.view, s.instance.placement) : MeshEye{};
+    const MeshEye eye = s.eye(desc);
     uint64_t least = 0;
     for (uint32_t p = 0; p < s.patches.size(); ++p) {
         s.levels[p] = uint8_t(s.asset.levelCount() - 1);

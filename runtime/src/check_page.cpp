@@ -176,7 +176,8 @@ Status checkCorners(const AssetView& v) {
 } // namespace
 
 Status checkPage(const AssetView& view) {
-    for (Status (*check)(const AssetView&) : {checkPositions, checkLevels, checkGenealogy, checkCorners}) {
+    for (Status (*check)(const AssetView&) :
+         {checkPositions, checkLevels, checkGenealogy, checkCorners, checkSkinRows}) {
         if (Status s = check(view); !s.ok()) return s;
     }
     return {};

@@ -290,6 +290,11 @@ Status checkMaterials(const AssetView& v) {
         if (!finite(m.baseColor) || !finite(m.emissive) || !std::isfinite(m.metallic) || !std::isfinite(m.roughness))
             return corrupt("material with figures that are not finite", i);
     }
+    if (!v.alphaCutoffs.empty() && v.alphaCutoffs.size() != v.materials.size())
+        return corrupt("section alphaCutoffs has another count than the materials");
+    for (uint32_t i = 0; i < v.alphaCutoffs.size(); ++i) {
+        if (!std::isfinite(v.alphaCutoffs[i])) return corrupt("material with an alpha cutoff that is not finite", i);
+    }
     return {};
 }
 
@@ -327,7 +332,8 @@ Status checkPageTable(const AssetView& v) {
 Status checkTables(const AssetView& view) {
     for (Status (*check)(const AssetView&) :
          {checkCounts, checkLevels, checkDomains, checkRanges, checkPatches, checkErrors, checkParts, checkPartShapes,
-          checkMerges, checkContours, checkFaceCounts, checkMaterials, checkNodes, checkPageTable}) {
+          checkMerges, checkContours, checkFaceCounts, checkMaterials, checkNodes, checkSkins, checkMorphTargets,
+          checkPageTable}) {
         if (Status s = check(view); !s.ok()) return s;
     }
     return {};

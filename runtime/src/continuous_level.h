@@ -52,7 +52,7 @@ inline float continuousLevel(const LevelTest& test) {
     const float projected = test.at.scale * view.pixelsPerUnit; // pixels of a unit of the mesh at distance 1
     if (!(projected > 0) || test.policy.loose.pixels > FLT_MAX) return float(test.levelCount() - 1);
     return continuousLevel(test.levelCount(), test.policy.loose.pixels * away / projected, kLeast * test.assetRadius,
-                           [&](uint32_t level) { return test.errors[level] * test.importance; });
+                           [&](uint32_t level) { return test.error(level) * test.importance; });
 }
 
 /// A part's control on a continuous level.

@@ -3,6 +3,7 @@
 #include "level_test.h"
 
 #include <xgc/selection.h>
+#include <xgc/skin.h>
 
 #include <algorithm>
 
@@ -52,6 +53,15 @@ struct LevelTest {
     float importance;
     float assetRadius;
     Standing at; ///< of errorStanding for errorPixels
+    // Of a patch of an instance with a pose; else null.
+    const AssetView* posedAsset = nullptr;
+    const PosedPatch* posed = nullptr;
+    uint32_t patch = 0;
+    std::span<const float> morphWeights{};
+
+    float error(uint32_t level) const {
+        return posed ? posedError(*posedAsset, patch, level, *posed, morphWeights) : errors[level];
+    }
 
     uint32_t levelCount() const {
         const size_t all = errors.size();
@@ -61,7 +71,7 @@ struct LevelTest {
     bool fits(uint32_t level, const Strictness& s) const {
         if (level == 0) return true;
         if (policy.policy == Policy::errorPixels) {
-            return errorFits(errors[level] * importance, policy.view, s.pixels, at);
+            return errorFits(error(level) * importance, policy.view, s.pixels, at);
         }
         return bandReached(policy.bands[level - 1] * importance * s.bandFactor, assetRadius, at);
     }

@@ -125,7 +125,16 @@ Status readSections(AssetView& view) {
     view.parts = reader.array<PartRecord>(SectionId::parts);
     view.partNeighbours = reader.array<uint32_t>(SectionId::partNeighbours);
     view.materials = reader.array<MaterialRecord>(SectionId::materials);
+    view.alphaCutoffs = reader.array<float>(SectionId::alphaCutoffs);
     view.nodes = reader.array<NodeRecord>(SectionId::nodes);
+    view.joints = reader.array<JointRecord>(SectionId::skins);
+    view.patchJoints = reader.array<PatchJoint>(SectionId::patchJoints);
+    view.skinErrors = reader.array<SkinError>(SectionId::skinErrors);
+    view.morphTargets = reader.array<MorphTargetRecord>(SectionId::morphTargets);
+    view.morphRows = reader.array<uint32_t>(SectionId::morphRows);
+    view.morphDeltas = reader.array<MorphDelta>(SectionId::morphDeltas);
+    view.morphReach = reader.array<float>(SectionId::morphReach);
+    view.morphErrors = reader.array<float>(SectionId::morphErrors);
     view.strings = reader.text(SectionId::strings);
     view.pages = reader.array<PageRecord>(SectionId::pages);
     view.streams = reader.array<StreamRecord>(SectionId::streams);

@@ -45,7 +45,9 @@ bool Scene::Impl::allocate() {
            instances.allocate(config.instanceCapacity) &&
            slotRanges.create(config.patchCapacity, config.instanceCapacity) &&
            controlRanges.create(config.steeredPartCapacity, config.instanceCapacity) &&
-           controls.allocate(config.steeredPartCapacity);
+           controls.allocate(config.steeredPartCapacity) && posed.allocate(config.patchCapacity) &&
+           weightRanges.create(config.morphWeightCapacity, config.instanceCapacity) &&
+           morphWeights.allocate(config.morphWeightCapacity);
 }
 
 Status Scene::create(const SceneConfig& config) {
@@ -224,6 +226,7 @@ void Scene::removeInstance(uint32_t id) {
     Impl& d = *impl_;
     SceneInstance& instance = d.at(id);
     clearParts(id);
+    clearPose(id);
     if (instance.slotRange != format::kNone) d.slotRanges.free(instance.slotRange);
     --d.assets[instance.asset].instanceCount;
     instance = {.generation = instance.generation + 1, .nextFree = d.freeInstance};
@@ -261,6 +264,43 @@ uint32_t Scene::instanceEnd() const {
 
 bool Scene::hasInstance(uint32_t id) const {
     return id < impl_->instanceEnd && impl_->instances[id].generation % 2 == 1;
+}
+
+// Poses -------------------------------------------------------------------------------------------------------------
+
+Status Scene::setPose(uint32_t id, const Pose& pose) {
+    assert(impl_);
+    Impl& d = *impl_;
+    SceneInstance& instance = d.at(id);
+    const AssetView& asset = *d.assetAt(instance.asset).desc.asset;
+    const auto count = uint32_t(pose.morphWeights.size());
+    if (count > 0 && instance.weightRange == format::kNone) {
+        const uint32_t range = d.weightRanges.allocate(count);
+        if (range == format::kNone) {
+            return outOfCapacity("too many weights of targets: raise SceneConfig::morphWeightCapacity", count);
+        }
+        instance.weightRange = range;
+        instance.firstWeight = d.weightRanges.offset(range);
+    }
+    std::copy_n(pose.morphWeights.data(), count, d.morphWeights.data() + instance.firstWeight);
+    instance.weightCount = count;
+    instance.posedSphere = posePatches(asset, pose, {d.posed.data() + instance.firstSlot, asset.patchCount()});
+    instance.posed = true;
+    return {};
+}
+
+void Scene::clearPose(uint32_t id) {
+    SceneInstance& instance = impl_->at(id);
+    if (instance.weightRange != format::kNone) impl_->weightRanges.free(instance.weightRange);
+    instance.weightRange = format::kNone;
+    instance.weightCount = 0;
+    instance.posed = false;
+}
+
+std::span<const PosedPatch> Scene::posedPatches(uint32_t id) const {
+    const SceneInstance& instance = impl_->at(id);
+    if (!instance.posed) return {};
+    return {impl_->posed.data() + instance.firstSlot, impl_->assetAt(instance.asset).desc.asset->patchCount()};
 }
 
 // Parts -------------------------------------------------------------------------------------------------------------

@@ -30,6 +30,11 @@ struct SceneInstance {
     uint32_t firstSlot = 0; ///< of its patches, in the arrays of views
     uint32_t controlRange = format::kNone;
     uint32_t firstControl = 0; ///< in Scene::Impl::controls, where it has a range
+    bool posed = false;        ///< Scene::Impl::posed has its patches, by slot
+    glm::vec4 posedSphere{0};
+    uint32_t weightRange = format::kNone;
+    uint32_t firstWeight = 0; ///< in Scene::Impl::morphWeights, where it has a range
+    uint32_t weightCount = 0; ///< of its pose
     uint32_t nextFree = format::kNone;
 
     bool steered() const { return controlRange != format::kNone; }
@@ -55,6 +60,10 @@ struct Scene::Impl : Allocated<Scene::Impl> {
 
     RangeAllocator controlRanges;
     FixedArray<PartControl> controls;
+
+    FixedArray<PosedPatch> posed; ///< by slot
+    RangeAllocator weightRanges;
+    FixedArray<float> morphWeights;
 
     bool allocate();
     void fillTables(uint32_t asset);

@@ -1,5 +1,6 @@
 #include <xgc/select.h>
 
+#include "largest_scale.h"
 #include "level_test.h"
 
 #include <glm/geometric.hpp>
@@ -63,6 +64,10 @@ float roundedUp(double value) {
 }
 
 } // namespace
+
+float largestScale(const glm::mat3& linear) {
+    return roundedUp(largestSingularValue(glm::dmat3(linear)));
+}
 
 View makeView(const glm::vec3& eye, float fovY, float viewportHeight) {
     assert(fovY > 0 && fovY < 3.1415926f);

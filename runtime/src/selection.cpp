@@ -94,10 +94,16 @@ Selection::Impl::Subject Selection::Impl::subject(uint32_t id) {
               .own = instances[id],
               .patches = {scene->patches.data() + stored.firstPatch, count},
               .controls = {},
+              .posed = {},
+              .morphWeights = {},
               .wanted = slots(wanted),
               .levels = slots(levels),
               .visible = slots(visible),
               .fractions = {fractions.data() + instance.firstSlot, count}};
+    if (instance.posed) {
+        s.posed = {scene->posed.data() + instance.firstSlot, count};
+        s.morphWeights = {scene->morphWeights.data() + instance.firstWeight, instance.weightCount};
+    }
     if (instance.steered()) s.controls = {scene->controls.data() + instance.firstControl, asset.parts.size()};
     if (desc.reference) {
         const Impl& reference = *desc.reference->impl_;
@@ -127,8 +133,8 @@ void Selection::Impl::decideWhole(const Subject& s) {
     s.own.whole = s.own.inBelt = false;
     // What was out of sight takes its levels at once.
     s.own.morphs = s.own.morphs && desc.morph && s.own.kind == InstanceKind::mixed;
-    if (desc.morph || desc.policy != Policy::errorPixels) {
-        // Nothing is whole: whole states go by errors.
+    if (desc.morph || !s.posed.empty() || desc.policy != Policy::errorPixels) {
+        // Nothing is whole: whole states go by errors, and by those of the unposed asset.
     } else if (s.controls.empty() && s.referenceOwn) {
         s.own.whole = s.referenceOwn->whole;
         s.own.inBelt = s.referenceOwn->inBelt;
@@ -156,7 +162,7 @@ void Selection::Impl::decideWhole(const Subject& s) {
 /// Writes the instance's kind and, where it is mixed, which patches are in the frustum and large enough.
 void Selection::Impl::cull(const Subject& s) {
     const Placement& placement = s.instance.placement;
-    const Sphere bounds = sphereOf(*s.asset.record);
+    const Sphere bounds = s.bounds();
     const Sphere inWorld{placement.toWorld * glm::vec4(bounds.center, 1), bounds.radius * placement.maxScale};
     const bool minding = desc.contributionPixels > 0;
     const auto small = [&](const Sphere& sphere) {
@@ -174,7 +180,7 @@ void Selection::Impl::cull(const Subject& s) {
         return;
     }
     for (size_t p = 0; p < s.patches.size(); ++p) {
-        const Sphere sphere{glm::vec3(s.patches[p].sphere), s.patches[p].sphere.w};
+        const Sphere sphere = s.patchBounds(uint32_t(p));
         const bool out = sideOf(frustum, sphere) == Side::outside;
         s.visible[p] = !out && !small(sphere) && !s.hidden(uint32_t(p));
     }
@@ -216,7 +222,7 @@ void Selection::Impl::chooseWhole(const Subject& s, ChunkCount& count) {
 
 void Selection::Impl::chooseMixed(const Subject& s, ChunkCount& count) {
     s.own.keptEpoch = 0;
-    const MeshEye eye = desc.cullBackfaces ? meshEye(desc.view, s.instance.placement) : MeshEye{};
+    const MeshEye eye = s.eye(desc);
     const uint32_t coarsest = s.asset.levelCount() - 1;
     const bool mayCoarsen = !s.own.inBelt || desc.triangleBudget > 0;
     count.stats.consideredPatches += uint32_t(s.patches.size());
@@ -252,7 +258,7 @@ float Selection::Impl::nextLambda(const Subject& s, uint32_t patch, bool glides)
 }
 
 void Selection::Impl::chooseContinuous(const Subject& s, ChunkCount& count) {
-    const MeshEye eye = desc.cullBackfaces ? meshEye(desc.view, s.instance.placement) : MeshEye{};
+    const MeshEye eye = s.eye(desc);
     const bool glides = s.own.morphs;
     s.own.keptEpoch = 0;
     s.own.morphs = true;

@@ -64,12 +64,28 @@ struct Selection::Impl : Allocated<Selection::Impl> {
         ViewInstance& own;
         std::span<const PatchBounds> patches;
         std::span<const PartControl> controls; ///< empty: not steered
+        std::span<const PosedPatch> posed;     ///< empty: without a pose
+        std::span<const float> morphWeights;
         std::span<uint8_t> wanted, levels, visible;
         std::span<float> fractions;
         // Of the reference.
         const Impl* reference = nullptr;
         const ViewInstance* referenceOwn = nullptr;
 
+        /// In mesh space, posed where the instance is.
+        Sphere bounds() const {
+            const glm::vec4& s = instance.posedSphere;
+            return posed.empty() ? sphereOf(*asset.record) : Sphere{glm::vec3(s), s.w};
+        }
+        Sphere patchBounds(uint32_t patch) const {
+            const glm::vec4& s = posed.empty() ? patches[patch].sphere : posed[patch].sphere;
+            return {glm::vec3(s), s.w};
+        }
+        /// Where cones are tested from; no cone holds in a pose.
+        MeshEye eye(const SelectionDesc& by) const {
+            const bool tests = by.cullBackfaces && posed.empty();
+            return tests ? meshEye(by.view, instance.placement) : MeshEye{};
+        }
         LevelTest wholeTest(const LevelPolicy& by, const Scene::Impl& in) const;
         LevelTest patchTest(const LevelPolicy& by, uint32_t patch) const;
         uint32_t controlled(uint32_t patch, uint32_t level) const;
@@ -118,11 +134,17 @@ struct Selection::Impl : Allocated<Selection::Impl> {
 // In the innermost loop.
 inline LevelTest Selection::Impl::Subject::patchTest(const LevelPolicy& by, uint32_t patch) const {
     const PatchBounds& bounds = patches[patch];
-    const Sphere sphere{glm::vec3(bounds.sphere), bounds.sphere.w};
+    const Sphere sphere = patchBounds(patch);
     const float steering = controls.empty() ? 1 : controls[bounds.part].importance;
     const size_t count = asset.levelCount();
-    return {by, asset.patchErrors.subspan(patch * count, count), bounds.importance * steering,
-            asset.record->sphereRadius, standingFor(by, instance.placement, sphere)};
+    LevelTest test{by, asset.patchErrors.subspan(patch * count, count), bounds.importance * steering,
+                   asset.record->sphereRadius, standingFor(by, instance.placement, sphere)};
+    if (posed.empty()) return test;
+    test.posedAsset = &asset;
+    test.posed = &posed[patch];
+    test.patch = patch;
+    test.morphWeights = morphWeights;
+    return test;
 }
 
 inline uint32_t Selection::Impl::Subject::controlled(uint32_t patch, uint32_t level) const {

@@ -44,7 +44,8 @@ KeptLevel Selection::Impl::keptLevel(const LevelTest& test, uint32_t level, bool
 }
 
 bool Selection::Impl::isSteady(const Subject& s) const {
-    return steadyPolicy && s.controls.empty() && !s.reference && !s.asset.residence; // finestLevel changes
+    return steadyPolicy && s.controls.empty() && s.posed.empty() && !s.reference &&
+           !s.asset.residence; // finestLevel changes
 }
 
 void Selection::Impl::forgetKept(const Subject& s) {

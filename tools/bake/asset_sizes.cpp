@@ -138,6 +138,20 @@ const char* sectionName(SectionId id) {
         return "patchFaceCounts";
     case SectionId::patchPages:
         return "patchPages";
+    case SectionId::alphaCutoffs:
+        return "alphaCutoffs";
+    case SectionId::patchJoints:
+        return "patchJoints";
+    case SectionId::skinErrors:
+        return "skinErrors";
+    case SectionId::morphRows:
+        return "morphRows";
+    case SectionId::morphDeltas:
+        return "morphDeltas";
+    case SectionId::morphReach:
+        return "morphReach";
+    case SectionId::morphErrors:
+        return "morphErrors";
     }
     return "unknown";
 }

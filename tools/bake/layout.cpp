@@ -107,6 +107,7 @@ Status checkColumns(const Hierarchy& h) {
     for (const auto& color : a.colors) ok = ok && fits(color);
     for (const auto& joints : a.joints) ok = ok && fits(joints);
     for (const auto& weights : a.weights) ok = ok && fits(weights);
+    for (const MorphTarget& target : a.morphTargets) ok = ok && fits(target.positions) && fits(target.normals);
     return ok ? Status{} : refuse("an attribute has another number of rows than there are wedges:", wedges);
 }
 
@@ -266,6 +267,9 @@ void addPatches(Layout& l) {
         setBounds(boundsOfPatch(l.mesh, h, l.facesOf(p), p, scratch), coneOfPatch(l.mesh, h, l.facesOf(p)), r);
         firstDomain += r.domainCount;
     }
+    std::vector<Text> targetNames;
+    for (const MorphTarget& target : h.attributes.morphTargets) targetNames.push_back(l.strings.add(target.name));
+    addPose(l.mesh, h, l.faces, l.rows, l.errors, targetNames, records, l.file);
     l.file.section<PatchRecord>(SectionId::patches, records);
 }
 
@@ -315,6 +319,11 @@ void addMaterials(Layout& l) {
         records.push_back(r);
     }
     l.file.section<MaterialRecord>(SectionId::materials, records);
+    std::vector<float> cutoffs;
+    for (const Material& m : l.mesh.materials) cutoffs.push_back(m.alphaCutoff);
+    const float usual = Material{}.alphaCutoff;
+    if (std::any_of(cutoffs.begin(), cutoffs.end(), [&](float c) { return c != usual; }))
+        l.file.section<float>(SectionId::alphaCutoffs, cutoffs);
 }
 
 void addNodes(Layout& l) {

@@ -153,6 +153,12 @@ private:
 /// Adds the streams that a renderer uploads.
 void addVertexStreams(const Hierarchy& hierarchy, const Rows& rows, FileBuilder& file);
 
+/// Adds what lets an asset be posed, where the mesh has skins or morph targets: joints, displacements, and their bounds
+/// and errors a patch. Writes the records' runs of joints.
+void addPose(const Mesh& mesh, const Hierarchy& hierarchy, const Faces& faces, const Rows& rows,
+             const PatchErrors& errors, std::span<const format::Text> targetNames,
+             std::span<format::PatchRecord> records, FileBuilder& file);
+
 /// XXH64 with seed 0.
 uint64_t hash(std::span<const std::byte> bytes);
 

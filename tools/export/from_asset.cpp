@@ -125,6 +125,7 @@ void addMaterials(const AssetView& asset, Model& model) {
         material.doubleSided = (record.flags & format::kDoubleSided) != 0;
         material.alphaMask = (record.flags & format::kAlphaMask) != 0;
         material.alphaBlend = (record.flags & format::kAlphaBlend) != 0;
+        material.alphaCutoff = asset.alphaCutoff(uint32_t(model.materials.size()));
         model.materials.push_back(material);
     }
 }

@@ -146,6 +146,7 @@ Json materialOf(const Material& material) {
     if (material.emissive != glm::vec3(0)) out["emissiveFactor"] = toJson(material.emissive);
     if (material.doubleSided) out["doubleSided"] = true;
     if (material.alphaMask) out["alphaMode"] = "MASK";
+    if (material.alphaMask && material.alphaCutoff != 0.5f) out["alphaCutoff"] = material.alphaCutoff;
     if (material.alphaBlend) out["alphaMode"] = "BLEND";
     return out;
 }

@@ -34,6 +34,7 @@ public:
         for (size_t set = 0; set < Attributes::kJointSets; ++set) {
             if (Status s = readJoints(set); !s.ok()) return s;
         }
+        if (target_.rigidJoint != kNone) followNode();
         for (size_t i = 0; i < primitive_.targets.size(); ++i) {
             if (Status s = readMorphTarget(i); !s.ok()) return s;
         }
@@ -135,10 +136,21 @@ private:
                         return refuse(fmt::format("vertex {} follows joint {} of {}", i, joint, jointCount));
                     joint = 0; // padding
                 }
-                outJoints[i][k] = uint16_t(joint);
+                outJoints[i][k] = uint16_t(target_.firstJoint + joint);
             }
         }
         return {};
+    }
+
+    /// Rows of a mesh without a skin, in a model that has some.
+    void followNode() {
+        for (size_t set = 0; set < Attributes::kJointSets; ++set) {
+            if (set > 0 && builder_.model().attributes.joints[set].empty()) continue;
+            const auto joints = builder_.joints(set);
+            const auto weights = builder_.weights(set);
+            std::fill(joints.begin(), joints.end(), glm::u16vec4(set == 0 ? target_.rigidJoint : 0, 0, 0, 0));
+            std::fill(weights.begin(), weights.end(), glm::vec4(set == 0 ? 1 : 0, 0, 0, 0));
+        }
     }
 
     Status readMorphTarget(size_t index) {

@@ -14,6 +14,8 @@ struct GltfTarget {
     uint32_t materialCount = 0;
     std::string name; ///< of the primitive, for messages
     std::vector<std::string> morphNames;
+    uint32_t firstJoint = 0;     ///< number of the skin's joint 0 among those of all skins
+    uint32_t rigidJoint = kNone; ///< of a node without a skin, in a model that has some
 };
 
 /// Adds a primitive's rows and triangles.

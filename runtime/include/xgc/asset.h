@@ -63,7 +63,17 @@ struct AssetView {
     std::span<const format::PartShape> partShapes; ///< a part each; empty where the file has none
     std::span<const format::MergeRecord> merges;   ///< empty where no parts join (parts.h)
     std::span<const format::MaterialRecord> materials;
+    std::span<const float> alphaCutoffs; ///< a material each; empty where all have the usual one
     std::span<const format::NodeRecord> nodes;
+    // Of assets that can be posed (skin.h); else empty.
+    std::span<const format::JointRecord> joints;
+    std::span<const format::PatchJoint> patchJoints;
+    std::span<const format::SkinError> skinErrors; ///< patch * levelCount + level
+    std::span<const format::MorphTargetRecord> morphTargets;
+    std::span<const uint32_t> morphRows; ///< first of morphDeltas for each row, and the end
+    std::span<const format::MorphDelta> morphDeltas;
+    std::span<const float> morphReach;  ///< patch * targets + target, mesh units
+    std::span<const float> morphErrors; ///< (patch * levelCount + level) * targets + target, mesh units
     std::string_view strings;
     std::span<const format::PageRecord> pages;
     std::span<const format::StreamRecord> streams;
@@ -97,12 +107,19 @@ struct AssetView {
     }
     /// Finest level at which a patch may be in a state: 0 but in streamed assets.
     uint32_t finestLevel(uint32_t patch) const { return residence ? residence->finestLevels[patch] : 0; }
+    /// Alpha below which an alpha-tested material is not there: glTF's default where the file has none.
+    float alphaCutoff(uint32_t material) const { return alphaCutoffs.empty() ? 0.5f : alphaCutoffs[material]; }
     /// E of a patch at a level, mesh units.
     float error(uint32_t patch, uint32_t level) const {
         return patchErrors[size_t(patch) * record->levelCount + level];
     }
     std::span<const uint32_t> domainsOf(uint32_t patch) const {
         return patchDomains.subspan(patches[patch].firstDomain, patches[patch].domainCount);
+    }
+    /// Joints that move a patch; none where the asset has no skins.
+    std::span<const format::PatchJoint> jointsOf(uint32_t patch) const {
+        if (joints.empty()) return {};
+        return patchJoints.subspan(patches[patch].firstJoint, patches[patch].jointCount);
     }
     /// Face lists of a patch, the finest first.
     std::span<const format::FaceList> listsOf(uint32_t patch) const {

@@ -39,15 +39,22 @@ enum class SectionId : uint32_t {
     streams = 17,        ///< StreamRecord[]
     patchSlots = 18,     ///< u32[]: beside patchDomains, times tierCount: first slot of the domain in the patch
     // Optional: a reader skips ids that it does not know, and opens files without them.
-    mergeTree = 64, ///< MergeRecord[]: how parts would join, in order; needs partShapes
-    contours = 65,  ///< f32[]: beside partNeighbours: length of the contour between the two, mesh units
-    morphTargets = 66,
-    skins = 67,
+    mergeTree = 64,    ///< MergeRecord[]: how parts would join, in order; needs partShapes
+    contours = 65,     ///< f32[]: beside partNeighbours: length of the contour between the two, mesh units
+    morphTargets = 66, ///< MorphTargetRecord[]: blend shapes; needs morphRows, morphReach and morphErrors
+    skins = 67,        ///< JointRecord[]: what rows' joints name; needs streams joints and weights, and patchJoints
     locks = 68,
     provenance = 69,      ///< UTF-8 JSON: settings, hash of the input, version of the tool (written by version 2)
     partShapes = 71,      ///< PartShape[partCount]
     patchFaceCounts = 72, ///< u32[patchCount * levelCount]: triangles of a patch in the uniform state of a level
     patchPages = 73,      ///< u32[patchCount * tierCount]: the page of each patch and tier; in files of several tiers
+    patchJoints = 74,     ///< PatchJoint[]: joints of each patch, rising
+    skinErrors = 75,      ///< SkinError[patchCount * levelCount]; with skins
+    morphRows = 76,       ///< u32[vertexCount + 1]: first of morphDeltas for each row, and the end
+    morphDeltas = 77,     ///< MorphDelta[]
+    morphReach = 78,      ///< f32[patchCount * targets]: longest displacement in the patch, mesh units
+    morphErrors = 79,     ///< f32[patchCount * levelCount * targets]: how much displacements change, mesh units
+    alphaCutoffs = 80,    ///< f32[materialCount]: alpha below which an alpha-tested material is not there
 };
 
 /// How a section or stream lies in the file (FORMAT.md, "Codecs"). `open` reads none alone; xgc::load decodes the
@@ -164,7 +171,9 @@ struct PatchRecord {
     float coneAxis[3]; ///< unit; face normals n of the patch have dot(n, axis) >= coneCosine ...
     float coneCosine;  ///< ... at its levels <= coneLevel, whatever its neighbours do; -1 where there is no cone
     uint32_t coneLevel;
-    uint32_t reserved[6];
+    uint32_t firstJoint; ///< in patchJoints; of an asset without skins 0
+    uint32_t jointCount;
+    uint32_t reserved[4];
 };
 static_assert(sizeof(PatchRecord) == 128);
 
@@ -237,6 +246,46 @@ struct NodeRecord {
     float toMesh[16]; ///< column-major, node space to mesh space
 };
 static_assert(sizeof(NodeRecord) == 80);
+
+/// A joint that moves rows: a node, and where it stood when the rows were bound to it. In a pose that puts the node at
+/// `toMesh`, the joint takes mesh space to mesh space by toMesh * inverseBind.
+struct JointRecord {
+    uint32_t node;
+    float inverseBind[12]; ///< column-major, four columns of three: affine
+    uint32_t reserved[3];
+};
+static_assert(sizeof(JointRecord) == 64);
+
+/// A joint that moves rows of a patch, and a sphere around all of those that it moves, in any state.
+struct PatchJoint {
+    uint32_t joint;
+    float center[3]; ///< mesh space, unposed
+    float radius;
+    uint32_t reserved[3];
+};
+static_assert(sizeof(PatchJoint) == 32);
+
+/// By how much what a level draws of a patch differs in what joints do to it: at a point v of level 0 and the point y
+/// of the drawn surface nearest to it, summed over the joints; c is the centre of the patch's sphere.
+struct SkinError {
+    float weight; ///< |w(v) - w(y)|
+    float moment; ///< |w(v) (v - c) - the same at y, interpolated over y's triangle|, mesh units
+};
+static_assert(sizeof(SkinError) == 8);
+
+struct MorphTargetRecord {
+    Text name;
+    uint32_t reserved[2];
+};
+static_assert(sizeof(MorphTargetRecord) == 16);
+
+/// What one target adds to one row at weight 1.
+struct MorphDelta {
+    uint32_t target;
+    float position[3];
+    float normal[3];
+};
+static_assert(sizeof(MorphDelta) == 28);
 
 /// A run of bytes that is loaded as a whole: what a range of levels (tier 0 is the coarsest) adds to a group of
 /// patches. Files of one tier have one page with everything.

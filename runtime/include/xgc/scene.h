@@ -2,6 +2,7 @@
 
 #include <xgc/asset.h>
 #include <xgc/select.h>
+#include <xgc/skin.h>
 
 #include <glm/vec4.hpp>
 
@@ -44,6 +45,7 @@ struct SceneConfig {
     uint32_t assetPatchCapacity = 65536; ///< sum of the patches of all assets
     uint32_t patchCapacity = 65536;      ///< sum of the patches of all instances
     uint32_t steeredPartCapacity = 4096; ///< sum of the parts of all instances with a PartControl
+    uint32_t morphWeightCapacity = 1024; ///< sum of the targets of all instances with a pose that has weights
 };
 
 /// What stands where: assets, instances of them, and how their parts are steered. Knows no views: any number of
@@ -79,6 +81,14 @@ public:
     /// The patches of an instance have numbers of their own from here on, below patchCapacity, while it lives: for what
     /// a host keeps of each.
     uint32_t firstSlot(uint32_t instance) const;
+
+    /// Moves an instance by joints and blend shapes, until it is told otherwise: selections cull by where its patches
+    /// then are, and choose levels by their errors there. A posed instance is never whole, and no normal cone culls it.
+    /// Copies what it needs. Fails only where morphWeightCapacity is taken.
+    Status setPose(uint32_t instance, const Pose& pose);
+    void clearPose(uint32_t instance);
+    /// What the pose does to each patch; empty where it has none.
+    std::span<const PosedPatch> posedPatches(uint32_t instance) const;
 
     /// Steers a part of one instance. Fails only where steeredPartCapacity is taken.
     Status setPart(uint32_t instance, uint32_t part, const PartControl& control);

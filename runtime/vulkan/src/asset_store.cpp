@@ -32,7 +32,16 @@ bool drawableColor(const VertexStream& s) {
            (s.format == format::StreamFormat::f32x4 && s.stride == 16);
 }
 
+/// What targets add, row by row: beside the streams.
+std::array<std::span<const std::byte>, 2> targetsOf(const AssetView& view) {
+    return {std::as_bytes(view.morphRows), std::as_bytes(view.morphDeltas)};
+}
+
 void noteAddress(StoredAsset& asset, const VertexStream& stream, VkDeviceAddress address) {
+    // Of an asset without a skin no shader follows them.
+    const bool skinned = !asset.view.joints.empty() && stream.set < 2;
+    if (skinned && stream.kind == format::StreamKind::joints) asset.joints[stream.set] = address;
+    if (skinned && stream.kind == format::StreamKind::weights) asset.weights[stream.set] = address;
     if (stream.set != 0) return;
     switch (stream.kind) {
     case format::StreamKind::position:
@@ -67,16 +76,23 @@ Status AssetStore::create(const Context& context, const RendererConfig& config) 
     if (!status.ok()) return status;
     arenaRanges_.create(units);
     materialRanges_.create(config.materialCapacity);
+    kinds_.resize(config.materialCapacity);
     uploads_.create(config.assetCapacity);
     morphs_ = config.morphGroupCapacity > 0;
     assets_.resize(config.assetCapacity);
     return {};
 }
 
-Status AssetStore::place(const AssetView& view, StoredAsset& asset) {
+uint64_t AssetStore::bytesOf(const AssetView& view, bool morphs) {
     uint64_t units = 0;
     for (const VertexStream& stream : streamsOf(view)) units += unitsOf(stream.bytes);
-    units += unitsOf(std::as_bytes(std::span(asset.morphRows)));
+    for (const std::span<const std::byte> bytes : targetsOf(view)) units += unitsOf(bytes);
+    if (morphs) units += (view.record->vertexCount * sizeof(MorphRow) + kAlignment - 1) / kAlignment;
+    return units * kAlignment;
+}
+
+Status AssetStore::place(const AssetView& view, StoredAsset& asset) {
+    const uint64_t units = bytesOf(view, morphs_) / kAlignment;
     if (!arenaRanges_.allocate(units, asset.bytes)) {
         return {StatusCode::outOfCapacity, "the vertex arena is full: raise RendererConfig::vertexArenaBytes",
                 units * kAlignment};
@@ -96,6 +112,16 @@ void AssetStore::queueStreams(StoredAsset& asset, uint32_t index) {
         noteAddress(asset, stream, arena_.address() + offset);
         offset += unitsOf(stream.bytes) * kAlignment;
     }
+    if (!asset.view.morphTargets.empty()) {
+        VkDeviceAddress* addresses[] = {&asset.targetRows, &asset.targetDeltas};
+        for (int i = 0; i < 2; ++i) {
+            const std::span<const std::byte> bytes = targetsOf(asset.view)[size_t(i)];
+            if (bytes.empty()) continue; // no row has a displacement
+            uploads_.add({index, bytes, offset});
+            *addresses[i] = arena_.address() + offset;
+            offset += unitsOf(bytes) * kAlignment;
+        }
+    }
     if (asset.morphRows.empty()) return;
     asset.morphs = arena_.address() + offset;
     uploads_.add({index, std::as_bytes(std::span(asset.morphRows)), offset});
@@ -103,13 +129,19 @@ void AssetStore::queueStreams(StoredAsset& asset, uint32_t index) {
 
 void AssetStore::writeMaterials(const StoredAsset& asset) {
     auto* out = reinterpret_cast<shader::MaterialRecord*>(materials_.mapped().data()) + asset.materials.first;
-    for (const format::MaterialRecord& m : asset.view.materials) {
+    for (uint32_t i = 0; i < asset.view.materials.size(); ++i) {
+        const format::MaterialRecord& m = asset.view.materials[i];
+        kinds_[asset.materials.first + i] = {(m.flags & format::kAlphaMask) != 0,
+                                             !asset.view.joints.empty() || !asset.view.morphTargets.empty()};
         shader::MaterialRecord record{};
         record.baseColor = {m.baseColor[0], m.baseColor[1], m.baseColor[2], m.baseColor[3]};
         record.emissive = {m.emissive[0], m.emissive[1], m.emissive[2], 0};
         record.metallic = m.metallic;
         record.roughness = m.roughness;
         record.flags = m.flags;
+        const bool masked = kinds_[asset.materials.first + i].masked;
+        record.alphaCutoff = masked ? asset.view.alphaCutoff(i) : 0; // nothing of an opaque one is below
+        anyMasked_ = anyMasked_ || masked;
         *out++ = record;
     }
 }

@@ -8,6 +8,7 @@
 #include <xgc/morph.h>
 #include <xgc/vulkan/renderer.h>
 
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,8 @@ struct StoredAsset {
     std::vector<uint8_t> partColors;
     VkDeviceAddress positions = 0, normals = 0, colors = 0;
     VkDeviceAddress morphs = 0;
+    std::array<VkDeviceAddress, 2> joints{}, weights{};
+    VkDeviceAddress targetRows = 0, targetDeltas = 0;
     std::vector<MorphRow> morphRows; ///< where the renderer morphs
     format::StreamFormat colorFormat{};
 
@@ -36,6 +39,9 @@ struct StoredAsset {
 class AssetStore {
 public:
     static constexpr VkDeviceSize kAlignment = 64;
+
+    /// Bytes of the arena that an asset takes.
+    static uint64_t bytesOf(const AssetView& view, bool morphs);
 
     Status create(const Context& context, const RendererConfig& config);
 
@@ -55,6 +61,14 @@ public:
     const Uploader& uploads() const { return uploads_; }
     const Buffer& arena() const { return arena_; }
     const Buffer& materials() const { return materials_; }
+    /// Which pipeline draws a material of the renderer's list: it is of one asset.
+    struct MaterialKind {
+        bool masked = false; ///< alpha-tested
+        bool posable = false;
+    };
+    MaterialKind kindOf(uint32_t material) const { return kinds_[material]; }
+    /// True once an alpha-tested material came: its pipelines draw opaque ones rightly too.
+    bool anyMasked() const { return anyMasked_; }
 
 private:
     struct Retired {
@@ -70,6 +84,8 @@ private:
     RangeList arenaRanges_;
     Buffer materials_; ///< written by the host where no frame reads
     RangeList materialRanges_;
+    std::vector<MaterialKind> kinds_; ///< a material each
+    bool anyMasked_ = false;
     Uploader uploads_;
     bool morphs_ = false;
     std::vector<StoredAsset> assets_;

@@ -3,12 +3,17 @@
 #include "shared.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 // The headers that glslangValidator writes define an array each.
 #include "background_frag.h"
 #include "background_vert.h"
+#include "depth_masked_frag.h"
+#include "depth_masked_vert.h"
+#include "depth_vert.h"
 #include "surface_frag.h"
+#include "surface_masked_frag.h"
 #include "surface_vert.h"
 #include "wire_frag.h"
 #include "wire_vert.h"
@@ -49,8 +54,10 @@ private:
 
 struct PipelineDesc {
     std::span<const uint32_t> vertex;
-    std::span<const uint32_t> fragment;
+    std::span<const uint32_t> fragment; ///< may be none
     bool writesDepth;
+    bool writesColor;
+    bool posable = false;
 };
 
 VkPipelineDepthStencilStateCreateInfo depthState(const PipelineFormats& formats, bool used) {
@@ -66,10 +73,15 @@ VkResult makePipeline(const Context& context, VkPipelineLayout layout, const Pip
                       const PipelineDesc& desc, VkPipeline& out) {
     const Module vertex(context, desc.vertex);
     if (vertex.result() != VK_SUCCESS) return vertex.result();
-    const Module fragment(context, desc.fragment);
-    if (fragment.result() != VK_SUCCESS) return fragment.result();
-    const VkPipelineShaderStageCreateInfo stages[] = {vertex.stage(VK_SHADER_STAGE_VERTEX_BIT),
-                                                      fragment.stage(VK_SHADER_STAGE_FRAGMENT_BIT)};
+    std::optional<Module> fragment;
+    if (!desc.fragment.empty()) fragment.emplace(context, desc.fragment);
+    if (fragment && fragment->result() != VK_SUCCESS) return fragment->result();
+    VkPipelineShaderStageCreateInfo stages[] = {vertex.stage(VK_SHADER_STAGE_VERTEX_BIT), {}};
+    const VkBool32 posable = desc.posable;
+    const VkSpecializationMapEntry constant{0, 0, sizeof posable};
+    const VkSpecializationInfo constants{1, &constant, sizeof posable, &posable};
+    stages[0].pSpecializationInfo = &constants;
+    if (fragment) stages[1] = fragment->stage(VK_SHADER_STAGE_FRAGMENT_BIT);
     VkPipelineVertexInputStateCreateInfo input{};
     input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
     VkPipelineInputAssemblyStateCreateInfo assembly{};
@@ -83,32 +95,34 @@ VkResult makePipeline(const Context& context, VkPipelineLayout layout, const Pip
     raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
     raster.cullMode = VK_CULL_MODE_NONE; // open and inconsistently wound meshes show both sides
     raster.lineWidth = 1;
+    raster.depthBiasEnable = !desc.writesColor;
     VkPipelineMultisampleStateCreateInfo multisample{};
     multisample.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
-    multisample.rasterizationSamples = formats.samples;
+    multisample.rasterizationSamples = desc.writesColor ? formats.samples : formats.depthOnlySamples;
     const VkPipelineDepthStencilStateCreateInfo depth = depthState(formats, desc.writesDepth);
     VkPipelineColorBlendAttachmentState target{};
     target.colorWriteMask =
         VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
     VkPipelineColorBlendStateCreateInfo blend{};
     blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
-    blend.attachmentCount = 1;
+    blend.attachmentCount = desc.writesColor ? 1 : 0;
     blend.pAttachments = &target;
-    const VkDynamicState dynamics[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+    const VkDynamicState dynamics[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR,
+                                       VK_DYNAMIC_STATE_DEPTH_BIAS};
     VkPipelineDynamicStateCreateInfo dynamic{};
     dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
-    dynamic.dynamicStateCount = 2;
+    dynamic.dynamicStateCount = desc.writesColor ? 2 : 3;
     dynamic.pDynamicStates = dynamics;
     VkPipelineRenderingCreateInfo rendering{};
     rendering.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO;
-    rendering.colorAttachmentCount = 1;
+    rendering.colorAttachmentCount = desc.writesColor ? 1 : 0;
     rendering.pColorAttachmentFormats = &formats.color;
     rendering.depthAttachmentFormat = formats.depth;
 
     VkGraphicsPipelineCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
     info.pNext = &rendering;
-    info.stageCount = 2;
+    info.stageCount = fragment ? 2 : 1;
     info.pStages = stages;
     info.pVertexInputState = &input;
     info.pInputAssemblyState = &assembly;
@@ -135,23 +149,34 @@ Status Pipelines::create(const Context& context, const PipelineFormats& formats)
     info.pushConstantRangeCount = 1;
     info.pPushConstantRanges = &range;
     VkResult result = context.vk().vkCreatePipelineLayout(context.device(), &info, context.allocation(), &layout_);
-    const auto make = [&](std::span<const uint32_t> vertex, std::span<const uint32_t> fragment, bool writesDepth,
-                          VkPipeline& out) {
-        if (result == VK_SUCCESS)
-            result = makePipeline(context, layout_, formats, {vertex, fragment, writesDepth}, out);
+    const auto make = [&](const PipelineDesc& desc, VkPipeline& out) {
+        if (result == VK_SUCCESS) result = makePipeline(context, layout_, formats, desc, out);
     };
-    make(surface_vert, surface_frag, true, surface_);
-    make(wire_vert, wire_frag, true, wire_);
-    make(background_vert, background_frag, false, background_);
+    const auto makePair = [&](PipelineDesc desc, Pair& out) {
+        for (const bool posable : {false, true}) {
+            desc.posable = posable;
+            make(desc, out[posable]);
+        }
+    };
+    makePair({surface_vert, surface_frag, true, true}, surface_);
+    makePair({surface_vert, surface_masked_frag, true, true}, surfaceMasked_);
+    makePair({wire_vert, wire_frag, true, true}, wire_);
+    make({background_vert, background_frag, false, true}, background_);
+    makePair({depth_vert, {}, true, false}, depth_);
+    makePair({depth_masked_vert, depth_masked_frag, true, false}, depthMasked_);
     return result == VK_SUCCESS ? Status{} : refused("a pipeline could not be made for these formats", result);
 }
 
 Pipelines::~Pipelines() {
     if (!context_) return;
     const Functions& vk = context_->vk();
-    for (VkPipeline pipeline : {surface_, wire_, background_}) {
+    const auto destroy = [&](VkPipeline pipeline) {
         if (pipeline) vk.vkDestroyPipeline(context_->device(), pipeline, context_->allocation());
+    };
+    for (const Pair& pair : {surface_, surfaceMasked_, wire_, depth_, depthMasked_}) {
+        for (const VkPipeline pipeline : pair) destroy(pipeline);
     }
+    destroy(background_);
     if (layout_) vk.vkDestroyPipelineLayout(context_->device(), layout_, context_->allocation());
 }
 

@@ -29,6 +29,9 @@ struct StoredInstance {
     uint32_t generation = 0; ///< odd while it is there
     uint32_t asset = 0;
     bool visible = true; ///< the host's wish; it is while its asset is resident
+    // Of its pose, in the renderer's lists.
+    RangeList::Range joints{}, weights{};
+    bool posed = false, skinned = false, displaced = false;
 };
 
 /// A view with levels of its own.
@@ -49,6 +52,7 @@ SceneConfig sceneConfig(const RendererConfig& config) {
     out.assetPatchCapacity = config.assetPatchCapacity;
     out.patchCapacity = config.patchCapacity;
     out.steeredPartCapacity = config.steeredPartCapacity;
+    out.morphWeightCapacity = config.morphWeightCapacity;
     return out;
 }
 
@@ -96,6 +100,12 @@ shader::ViewRecord viewRecord(const ViewDesc& view) {
     record.linePixels = view.linePixels;
     record.highlightInstance = view.highlightInstance;
     record.highlightPart = view.highlightPart;
+    if (!view.sun || view.mode != ShadingMode::shaded) return record;
+    record.sun = glm::vec4(view.sun->towards, view.sun->texelUnits);
+    record.sunColor = glm::vec4(view.sun->color, 1);
+    record.shadow = view.sun->depths;
+    record.shadowSize = view.sun->size;
+    record.worldToShadow = view.sun->worldToClip;
     return record;
 }
 
@@ -122,6 +132,10 @@ struct Renderer::Impl {
     std::vector<StoredInstance> instances;               ///< by id in the scene
     std::vector<shader::InstanceRecord> instanceRecords; ///< likewise
     uint32_t instanceEnd = 0;                            ///< ids from here on were never used
+    RangeList jointRanges, weightRanges;
+    std::vector<JointRows> joints; ///< of all poses
+    std::vector<float> weights;    ///< of targets, likewise
+    uint32_t poseCount = 0;        ///< instances with a pose
 
     uint64_t frame = 0;
     VkDeviceSize indexStagingOffset = 0;
@@ -138,12 +152,19 @@ struct Renderer::Impl {
     void writeGpu();
     StoredInstance* find(InstanceHandle handle);
     void showResident();
+    void writePoses();
+    void releasePose(StoredInstance& instance);
     void writeDraws(uint32_t view);
     void writeLambdas(uint32_t view);
-    void recordBatches(VkCommandBuffer cmd, uint32_t view, shader::PushConstants push, bool wire) const;
+    Status beginPass(uint32_t view, const shader::ViewRecord& record, shader::PushConstants& push);
+    enum class Which : uint32_t { all, opaque, masked };
+    void recordBatches(VkCommandBuffer cmd, uint32_t view, shader::PushConstants push, const Pipelines::Pair& pair,
+                       Which which) const;
     struct GpuDraws {
         uint32_t view;
-        bool late, wire;
+        bool late;
+        VkPipeline pipeline;
+        bool indexed;
     };
     void recordGpuDraws(VkCommandBuffer cmd, const GpuDraws& what, shader::PushConstants push) const;
     Status recordDraws(VkCommandBuffer cmd, const ViewDesc& desc, bool late);
@@ -175,12 +196,17 @@ Status Renderer::Impl::allocate() {
     }
     if (status.ok()) status = staging.create(*context, config.stagingBytes, config.framesInFlight);
     if (status.ok()) {
-        status = records.create(*context, {config.passCapacity, config.viewCapacity, config.instanceCapacity,
-                                           config.patchCapacity + DrawListConfig{}.wholeRangeCapacity,
-                                           config.framesInFlight, config.morphGroupCapacity});
+        status =
+            records.create(*context, {config.passCapacity, config.viewCapacity, config.instanceCapacity,
+                                      config.patchCapacity + DrawListConfig{}.wholeRangeCapacity, config.framesInFlight,
+                                      config.morphGroupCapacity, config.jointCapacity, config.morphWeightCapacity});
     }
     if (status.ok()) status = timeline.create(*context);
     if (status.ok()) status = allocateGpu();
+    joints.resize(config.jointCapacity);
+    weights.resize(config.morphWeightCapacity);
+    jointRanges.create(config.jointCapacity);
+    weightRanges.create(config.morphWeightCapacity);
     instances.resize(config.instanceCapacity);
     instanceRecords.resize(config.instanceCapacity);
     storedAsset.resize(config.assetCapacity);
@@ -211,8 +237,8 @@ Status Renderer::create(const Context& context, const RendererConfig& config) {
     impl->config = config;
     Status status = impl->allocate();
     if (status.ok()) {
-        status = impl->pipelines.create(context,
-                                        {config.colorFormat, config.depthFormat, config.samples, config.depthCompare});
+        status = impl->pipelines.create(context, {config.colorFormat, config.depthFormat, config.samples,
+                                                  config.depthCompare, config.depthOnlySamples});
     }
     if (status.ok()) impl_ = std::move(impl);
     return status;
@@ -235,6 +261,7 @@ Status Renderer::Impl::addGpuAsset(StoredAsset& asset) {
 const char* Renderer::Impl::hostReason(uint32_t view, const SelectionDesc& desc) const {
     if (view >= config.gpu.views) return "GpuPathConfig::views";
     if (gpuLacks) return gpuLacks;
+    if (poseCount > 0) return "an instance with a pose";
     if (assetsOffGpu > 0) return "an asset with a patch of more than 1024 domains";
     return GpuView::lacks(desc);
 }
@@ -249,8 +276,9 @@ void Renderer::Impl::recordGpuDraws(VkCommandBuffer cmd, const GpuDraws& what, s
     push.lambdaOffsets = push.lambdas = 0;
     vk.vkCmdPushConstants(cmd, pipelines.layout(), VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                           sizeof(push), &push);
-    if (!what.wire) vk.vkCmdBindIndexBuffer(cmd, gpu.indices(what.late).handle(), 0, VK_INDEX_TYPE_UINT32);
-    const auto draw = what.wire ? vk.vkCmdDrawIndirectCount : vk.vkCmdDrawIndexedIndirectCount; // as recordBatches
+    vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, what.pipeline);
+    if (what.indexed) vk.vkCmdBindIndexBuffer(cmd, gpu.indices(what.late).handle(), 0, VK_INDEX_TYPE_UINT32);
+    const auto draw = what.indexed ? vk.vkCmdDrawIndexedIndirectCount : vk.vkCmdDrawIndirectCount; // as recordBatches
     draw(cmd, gpu.buffer(), lists.commands, gpu.buffer(), lists.totals + offsetof(shader::GpuTotals, drawCount),
          gpu.drawCapacity(), sizeof(DrawCommand));
 }
@@ -361,6 +389,12 @@ Status Renderer::addInstance(AssetHandle handle, const Placement& placement, Ins
     record.colors = asset->colors;
     record.colorFormat = uint32_t(asset->colorFormat);
     record.morphs = asset->morphs;
+    for (int set = 0; set < 2; ++set) {
+        record.joints[set] = asset->joints[size_t(set)];
+        record.weights[set] = asset->weights[size_t(set)];
+    }
+    record.morphRows = asset->targetRows;
+    record.morphDeltas = asset->targetDeltas;
     record.maxScale = placement.maxScale;
     self.instanceEnd = std::max(self.instanceEnd, id + 1);
     out = {id, instance.generation};
@@ -383,6 +417,51 @@ Status Renderer::setVisible(InstanceHandle handle, bool visible) {
     return {};
 }
 
+/// Room for the pose's matrices and weights, taken at its first one.
+Status Renderer::setPose(InstanceHandle handle, const Pose& pose) {
+    Impl& self = *impl_;
+    StoredInstance* instance = self.find(handle);
+    if (!instance) return {StatusCode::badArgument, "setPose: no such instance", handle.index};
+    const AssetView& asset = self.assets.at(instance->asset).view;
+    const size_t joints = pose.joints.size(), weights = pose.morphWeights.size();
+    if ((joints > 0 && joints != asset.joints.size()) || (weights > 0 && weights != asset.morphTargets.size())) {
+        return {StatusCode::badArgument, "setPose: give a matrix a joint and a weight a target of the asset", joints};
+    }
+    if (joints > 0 && instance->joints.count == 0 && !self.jointRanges.allocate(joints, instance->joints)) {
+        return {StatusCode::outOfCapacity, "too many joints: raise RendererConfig::jointCapacity", joints};
+    }
+    if (weights > 0 && instance->weights.count == 0 && !self.weightRanges.allocate(weights, instance->weights)) {
+        return {StatusCode::outOfCapacity, "too many targets: raise RendererConfig::morphWeightCapacity", weights};
+    }
+    const Status status = self.scene.setPose(handle.index, pose);
+    if (!status.ok()) return status;
+    for (size_t j = 0; j < joints; ++j) {
+        const glm::mat4x3& m = pose.joints[j];
+        JointRows& rows = self.joints[instance->joints.first + j];
+        for (int row = 0; row < 3; ++row) rows[size_t(row)] = {m[0][row], m[1][row], m[2][row], m[3][row]};
+    }
+    std::copy(pose.morphWeights.begin(), pose.morphWeights.end(), self.weights.begin() + instance->weights.first);
+    self.poseCount += !std::exchange(instance->posed, true);
+    instance->skinned = joints > 0;
+    instance->displaced = weights > 0 && !asset.morphDeltas.empty();
+    return {};
+}
+
+void Renderer::Impl::releasePose(StoredInstance& instance) {
+    jointRanges.free(std::exchange(instance.joints, {}));
+    weightRanges.free(std::exchange(instance.weights, {}));
+    poseCount -= std::exchange(instance.posed, false);
+    instance.skinned = instance.displaced = false;
+}
+
+Status Renderer::clearPose(InstanceHandle handle) {
+    StoredInstance* instance = impl_->find(handle);
+    if (!instance) return {StatusCode::badArgument, "clearPose: no such instance", handle.index};
+    impl_->releasePose(*instance);
+    impl_->scene.clearPose(handle.index);
+    return {};
+}
+
 Status Renderer::setPart(InstanceHandle handle, uint32_t part, const PartControl& control) {
     const StoredInstance* instance = impl_->find(handle);
     if (!instance) return {StatusCode::badArgument, "setPart: no such instance", handle.index};
@@ -402,6 +481,7 @@ Status Renderer::removeInstance(InstanceHandle handle) {
     StoredInstance* instance = impl_->find(handle);
     if (!instance) return {StatusCode::badArgument, "removeInstance: no such instance", handle.index};
     if (impl_->isOnGpu(handle.index)) impl_->gpuScene.removeInstance(impl_->scene, handle.index);
+    impl_->releasePose(*instance);
     impl_->scene.removeInstance(handle.index);
     --impl_->assets.at(instance->asset).instanceCount;
     ++instance->generation;
@@ -523,6 +603,19 @@ void Renderer::Impl::writeGpu() {
     }
 }
 
+/// Joints and weights, and where each posed instance finds its own this frame.
+void Renderer::Impl::writePoses() {
+    std::copy(joints.begin(), joints.end(), records.joints());
+    std::copy(weights.begin(), weights.end(), records.morphWeights());
+    for (uint32_t id = 0; id < instanceEnd; ++id) {
+        const StoredInstance& instance = instances[id];
+        shader::InstanceRecord& record = instanceRecords[id];
+        record.pose = instance.skinned ? records.jointsAddress() + instance.joints.first * sizeof(JointRows) : 0;
+        record.morphWeights =
+            instance.displaced ? records.morphWeightsAddress() + instance.weights.first * sizeof(float) : 0;
+    }
+}
+
 void Renderer::endFrame() {
     Impl& self = *impl_;
     self.stats = {};
@@ -539,6 +632,7 @@ void Renderer::endFrame() {
         self.stats.deferredInstances += drawn.deferredInstances;
     }
     self.indexCache.endFrame();
+    self.writePoses();
     self.writeGpu();
     std::copy_n(self.instanceRecords.begin(), self.instanceEnd, self.records.instances());
     self.indexCopies.clear();
@@ -580,14 +674,24 @@ void Renderer::recordBackground(VkCommandBuffer cmd) const {
     vk.vkCmdDraw(cmd, 3, 1, 0, 0);
 }
 
-void Renderer::Impl::recordBatches(VkCommandBuffer cmd, uint32_t view, shader::PushConstants push, bool wire) const {
+/// Draws the batches of one kind of material.
+void Renderer::Impl::recordBatches(VkCommandBuffer cmd, uint32_t view, shader::PushConstants push,
+                                   const Pipelines::Pair& pair, Which which) const {
     const Functions& vk = context->vk();
     // Wire draws read the same commands as VkDrawIndirectCommand, which is a DrawCommand's first four words: its
     // vertexOffset is taken for firstInstance, and the instances and rows are found by the draw's record.
-    const auto draw = wire ? vk.vkCmdDrawIndirect : vk.vkCmdDrawIndexedIndirect;
+    const bool indexed = pair != pipelines.wire();
+    const auto draw = indexed ? vk.vkCmdDrawIndexedIndirect : vk.vkCmdDrawIndirect;
     uint32_t bound = 0;
+    VkPipeline boundPipeline = VK_NULL_HANDLE;
     for (const DrawBatch& batch : views[view].draws.batches()) {
-        if (!wire && std::exchange(bound, batch.indexBytes) != batch.indexBytes) {
+        const AssetStore::MaterialKind kind = assets.kindOf(batch.material);
+        if (which != Which::all && kind.masked != (which == Which::masked)) continue;
+        const VkPipeline pipeline = pair[kind.posable];
+        if (std::exchange(boundPipeline, pipeline) != pipeline) {
+            vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+        }
+        if (indexed && std::exchange(bound, batch.indexBytes) != batch.indexBytes) {
             const VkIndexType type = batch.indexBytes == 2 ? VK_INDEX_TYPE_UINT16 : VK_INDEX_TYPE_UINT32;
             vk.vkCmdBindIndexBuffer(cmd, indexArena.handle(), 0, type);
         }
@@ -603,32 +707,61 @@ void Renderer::Impl::recordBatches(VkCommandBuffer cmd, uint32_t view, shader::P
     }
 }
 
-Status Renderer::Impl::recordDraws(VkCommandBuffer cmd, const ViewDesc& desc, bool late) {
+/// Takes the next of the frame's pass records.
+Status Renderer::Impl::beginPass(uint32_t view, const shader::ViewRecord& record, shader::PushConstants& push) {
     if (passCount == config.passCapacity) {
         return {StatusCode::outOfCapacity, "too many passes a frame: raise RendererConfig::passCapacity",
                 passCount + 1ull};
     }
-    if (desc.view >= views.size()) {
-        return {StatusCode::outOfCapacity, "no such view: raise RendererConfig::viewCapacity", desc.view + 1ull};
+    if (view >= views.size()) {
+        return {StatusCode::outOfCapacity, "no such view: raise RendererConfig::viewCapacity", view + 1ull};
     }
-    const Functions& vk = context->vk();
-    records.passes()[passCount] = viewRecord(desc);
-    shader::PushConstants push{};
+    records.passes()[passCount] = record;
+    push = {};
     push.view = records.passAddress(passCount++);
     push.instances = records.instancesAddress();
-    push.draws = records.drawsAddress(desc.view);
+    push.draws = records.drawsAddress(view);
     push.materials = assets.materials().address();
     push.indices = indexArena.address();
-    push.instanceIds = records.idsAddress(desc.view);
-    push.lambdaOffsets = records.lambdaOffsetsAddress(desc.view);
-    push.lambdas = records.lambdasAddress(desc.view);
+    push.instanceIds = records.idsAddress(view);
+    push.lambdaOffsets = records.lambdaOffsetsAddress(view);
+    push.lambdas = records.lambdasAddress(view);
+    return {};
+}
+
+Status Renderer::Impl::recordDraws(VkCommandBuffer cmd, const ViewDesc& desc, bool late) {
+    shader::PushConstants push;
+    const Status status = beginPass(desc.view, viewRecord(desc), push);
+    if (!status.ok()) return status;
     const bool wire = desc.mode == ShadingMode::wire;
-    vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, wire ? pipelines.wire() : pipelines.surface());
     if (views[desc.view].onDevice()) {
-        recordGpuDraws(cmd, {desc.view, late, wire}, push);
+        const Pipelines::Pair& shaded = assets.anyMasked() ? pipelines.surfaceMasked() : pipelines.surface();
+        recordGpuDraws(cmd, {desc.view, late, wire ? pipelines.wire()[0] : shaded[0], !wire}, push);
+    } else if (wire) {
+        recordBatches(cmd, desc.view, push, pipelines.wire(), Which::all);
     } else {
-        recordBatches(cmd, desc.view, push, wire);
+        recordBatches(cmd, desc.view, push, pipelines.surface(), Which::opaque);
+        recordBatches(cmd, desc.view, push, pipelines.surfaceMasked(), Which::masked);
     }
+    return {};
+}
+
+Status Renderer::recordDepth(VkCommandBuffer cmd, const DepthDesc& desc) {
+    Impl& self = *impl_;
+    shader::ViewRecord record{};
+    record.worldToClip = desc.worldToClip;
+    shader::PushConstants push;
+    const Status status = self.beginPass(desc.view, record, push);
+    if (!status.ok()) return status;
+    self.context->vk().vkCmdSetDepthBias(cmd, desc.constantBias, 0, desc.slopeBias);
+    const Pipelines& pipelines = self.pipelines;
+    if (self.views[desc.view].onDevice()) {
+        const Pipelines::Pair& pair = self.assets.anyMasked() ? pipelines.depthMasked() : pipelines.depth();
+        self.recordGpuDraws(cmd, {desc.view, false, pair[0], true}, push);
+        return {};
+    }
+    self.recordBatches(cmd, desc.view, push, pipelines.depth(), Impl::Which::opaque);
+    self.recordBatches(cmd, desc.view, push, pipelines.depthMasked(), Impl::Which::masked);
     return {};
 }
 
@@ -690,7 +823,8 @@ std::optional<ShadingMode> modeNamed(std::string_view name) {
 
 RendererConfig configFor(std::span<const AssetView* const> assets, uint32_t instances, const RendererConfig& base) {
     RendererConfig config = base;
-    uint64_t patches = 0, materials = 0, faces = 0, streamBytes = 0, largestFaces = 0, groups = 0;
+    uint64_t patches = 0, materials = 0, faces = 0, streamBytes = 0, largestFaces = 0, groups = 0, joints = 0,
+             targets = 0;
     for (const AssetView* asset : assets) {
         patches += asset->patchCount();
         materials += asset->materials.size();
@@ -698,12 +832,9 @@ RendererConfig configFor(std::span<const AssetView* const> assets, uint32_t inst
         largestFaces = std::max<uint64_t>(largestFaces, asset->record->faceCount);
         config.faceCapacity = std::max(config.faceCapacity, asset->record->maxPatchFaces);
         groups += groupCount(*asset);
-        if (config.morphGroupCapacity > 0) {
-            streamBytes += asset->record->vertexCount * sizeof(MorphRow) + AssetStore::kAlignment;
-        }
-        for (uint32_t i = 0; i < asset->vertexStreamCount; ++i) {
-            streamBytes += asset->vertexStreams[i].bytes.size() + AssetStore::kAlignment;
-        }
+        streamBytes += AssetStore::bytesOf(*asset, config.morphGroupCapacity > 0);
+        joints += asset->joints.size();
+        targets += asset->morphTargets.size();
         config.slotCapacity = std::max(config.slotCapacity, scratchCapacity(*asset));
         config.domainCapacity = std::max(config.domainCapacity, asset->record->domainCount);
     }
@@ -715,6 +846,8 @@ RendererConfig configFor(std::span<const AssetView* const> assets, uint32_t inst
     grow(config.assetPatchCapacity, patches);
     grow(config.patchCapacity, patches * instances);
     grow(config.materialCapacity, materials);
+    grow(config.jointCapacity, joints * instances);
+    grow(config.morphWeightCapacity, targets * instances);
     if (config.morphGroupCapacity > 0) grow(config.morphGroupCapacity, groups * instances);
     // Twice what is held: of mixed instances all, and what frames in flight still read of a whole change.
     grow(config.indexBytes, 2 * 3 * sizeof(uint32_t) * faces * instances * (1 + config.framesInFlight));

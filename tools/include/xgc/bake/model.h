@@ -43,6 +43,7 @@ struct Material {
     glm::vec3 emissive{0}; ///< linear
     bool doubleSided = false;
     bool alphaMask = false;
+    float alphaCutoff = 0.5f; ///< of alphaMask: alpha below it is not there
     bool alphaBlend = false;
 };
 
@@ -51,9 +52,10 @@ struct SceneNode {
     std::string name;
     uint32_t parent = kNone; ///< before its children
     glm::mat4 toMesh{1};
-    uint32_t skin = kNone; ///< of the geometry that the node holds: its joints are rows of this skin
+    uint32_t skin = kNone; ///< of the geometry that the node holds
 };
 
+/// Rows of Attributes::joints name joints of all skins, one behind the other.
 struct Skin {
     std::string name;
     std::vector<uint32_t> joints; ///< nodes

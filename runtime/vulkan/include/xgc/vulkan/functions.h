@@ -34,6 +34,7 @@
     X(vkCmdFillBuffer)                                                                                                 \
     X(vkCmdPipelineBarrier2)                                                                                           \
     X(vkCmdPushConstants)                                                                                              \
+    X(vkCmdSetDepthBias)                                                                                               \
     X(vkCmdSetScissor)                                                                                                 \
     X(vkCmdSetViewport)                                                                                                \
     X(vkCreateBuffer)                                                                                                  \

@@ -56,7 +56,7 @@ struct RendererConfig {
     uint32_t domainCapacity = 65536;              ///< largest domain count of the assets
     uint32_t faceCapacity = 131072;               ///< largest AssetRecord::maxPatchFaces of the assets
     uint32_t viewCapacity = 1;                    ///< views with levels of their own: the camera's, shadows', ...
-    uint32_t passCapacity = 4;                    ///< calls of recordDraws a frame
+    uint32_t passCapacity = 4;                    ///< calls of recordDraws and recordDepth a frame
     uint32_t indexBytes = 64u << 20;              ///< of the index arena: twice what is drawn and more
     bool narrowIndices = true;                    ///< 16 bits where a patch allows
     VkDeviceSize vertexArenaBytes = 256ull << 20; ///< vertex streams of all assets
@@ -69,17 +69,22 @@ struct RendererConfig {
     VkFormat depthFormat = VK_FORMAT_D32_SFLOAT;
     VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_4_BIT;
     VkCompareOp depthCompare = VK_COMPARE_OP_GREATER; ///< Camera's depth is reversed
+    /// Of the attachments of recordDepth, whose format is depthFormat too.
+    VkSampleCountFlagBits depthOnlySamples = VK_SAMPLE_COUNT_1_BIT;
 
     /// Sum of the groups (groupCount of morph.h) of all instances that morph in a view. 0: none does, and no asset
     /// takes the 8 bytes a row that morphs need.
     uint32_t morphGroupCapacity = 0;
+    // Poses.
+    uint32_t jointCapacity = 0;       ///< sum of the joints of all instances with a pose
+    uint32_t morphWeightCapacity = 0; ///< sum of the targets of all instances with a pose
 
     GpuPathConfig gpu;
 };
 
 /// Capacities that hold `instances` of each of the assets with every patch at its finest: RendererConfig's arenas,
-/// staging and counts, grown from `base`; morphs for all of them where base.morphGroupCapacity is not 0. For programs
-/// that know their assets; engines set budgets.
+/// staging and counts, grown from `base`; poses for all of them that can have one, and morphs where
+/// base.morphGroupCapacity is not 0. For programs that know their assets; engines set budgets.
 RendererConfig configFor(std::span<const AssetView* const> assets, uint32_t instances, const RendererConfig& base = {});
 
 enum class ShadingMode : uint32_t {
@@ -91,6 +96,17 @@ enum class ShadingMode : uint32_t {
 };
 /// By its name here; none for another word.
 std::optional<ShadingMode> modeNamed(std::string_view name);
+
+/// A sun, for mode shaded in place of the studio's lights. Without a shadow map nothing is in shadow.
+struct Sun {
+    glm::vec3 towards{0, 1, 0}; ///< unit, to the sun
+    glm::vec3 color{1};         ///< linear
+    // A shadow map, such as ShadowMap's.
+    VkDeviceAddress depths = 0; ///< reversed, a float a texel, rows from the top
+    uint32_t size = 0;          ///< texels a side
+    glm::mat4 worldToClip{1};
+    float texelUnits = 0; ///< world units that a texel covers
+};
 
 struct ViewDesc {
     uint32_t view = 0; ///< whose levels and draws
@@ -104,6 +120,16 @@ struct ViewDesc {
     /// A part of an instance that is drawn in a warm tone; none by default. Instances that are drawn whole show none.
     uint32_t highlightInstance = format::kNone;
     uint32_t highlightPart = format::kNone;
+    std::optional<Sun> sun;
+};
+
+/// A pass that writes depth alone: a shadow map, a depth prepass.
+struct DepthDesc {
+    uint32_t view = 0; ///< whose levels and draws
+    glm::mat4 worldToClip{1};
+    // As vkCmdSetDepthBias.
+    float constantBias = 0;
+    float slopeBias = 0;
 };
 
 /// Sums over all views, but for what the views share.
@@ -145,7 +171,8 @@ struct FrameGeometry {
 ///     vkQueueSubmit2(queue, ... signal renderer.frameDone() ...);
 ///
 /// Every frame that was begun must be recorded and submitted, in order, on one queue. Frames allocate nothing.
-/// One thread at a time. Positions are float3 at any scale; draws are opaque.
+/// One thread at a time. Positions are float3 at any scale; draws are opaque or, where a material says so,
+/// alpha-tested.
 class Renderer {
 public:
     Renderer();
@@ -167,6 +194,9 @@ public:
     Status addInstance(AssetHandle asset, const Placement& placement, InstanceHandle& handle);
     Status setPlacement(InstanceHandle instance, const Placement& placement);
     Status setVisible(InstanceHandle instance, bool visible);
+    /// As Scene::setPose: in all views from the next endFrame on, until it is told otherwise.
+    Status setPose(InstanceHandle instance, const Pose& pose);
+    Status clearPose(InstanceHandle instance);
     /// As Scene::setPart.
     Status setPart(InstanceHandle instance, uint32_t part, const PartControl& control);
     Status clearParts(InstanceHandle instance);
@@ -189,8 +219,12 @@ public:
     void recordTransfers(VkCommandBuffer cmd) const;
     /// A light grey gradient over the whole target; no depth. Optional.
     void recordBackground(VkCommandBuffer cmd) const;
-    /// One vkCmdDrawIndexedIndirect a material and size of index. Viewport and scissor are the host's.
+    /// One vkCmdDrawIndexedIndirect a material and size of index, opaque materials before alpha-tested ones. Viewport
+    /// and scissor are the host's.
     Status recordDraws(VkCommandBuffer cmd, const ViewDesc& view);
+    /// Likewise to a depth attachment alone (RendererConfig::depthOnlySamples): opaque materials without a fragment
+    /// stage. The same vertices at the same clip space get the same depths as in recordDraws, bit for bit.
+    Status recordDepth(VkCommandBuffer cmd, const DepthDesc& pass);
     /// To be signalled by the host's submission of the frame.
     VkSemaphoreSubmitInfo frameDone() const;
 
