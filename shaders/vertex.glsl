@@ -121,16 +121,16 @@ Vertex fetchMorphed(InstanceRecord instance, uint firstLambda, uint row) {
         const uint groupAndLevel = rows.at[2 * row + 1];
         const float lambda = lambdas.at[firstLambda + (groupAndLevel & 0xffffff)];
         const float share = clamp(lambda - (float(groupAndLevel >> 24) - 1.0), 0.0, 1.0);
-        if (share <= 0.0 || (share < 1.0 && count == kMorphRows)) break;
+        const bool last = share <= 0.0 || (share < 1.0 && count == kMorphRows);
+        if (share < 1.0) addWeighted(sum, last ? rest : rest * (1.0 - share), fetchVertex(instance, row));
+        if (last) break;
         if (share < 1.0) {
-            addWeighted(sum, rest * (1.0 - share), fetchVertex(instance, row));
             rest *= share;
             ++count;
         }
         row = rows.at[2 * row]; // its target
     }
-    if (count == 1) return fetchVertex(instance, row);
-    addWeighted(sum, rest, fetchVertex(instance, row));
+    if (count == 1) return sum;
     const float length2 = dot(sum.normal, sum.normal);
     if (length2 > 0.0) sum.normal *= inversesqrt(length2);
     return sum;

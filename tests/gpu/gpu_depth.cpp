@@ -5,6 +5,7 @@
 #include "buffer.h"
 #include "hand_asset.h"
 #include "meshes/baked_model.h"
+#include "meshes/posed_model.h"
 
 #include <xgc/morph.h>
 #include <xgc/vulkan/shadow_map.h>
@@ -184,6 +185,29 @@ TEST_CASE("a depth-only pass leaves the depths of the shaded one, bit for bit, a
         CHECK(drawn(depths.shaded) > kSize * kSize / 8);
         CHECK(depths.shaded == depths.alone);
     }
+}
+
+TEST_CASE("so it does of a posed asset, between levels too") {
+    const Gpu gpu;
+    if (!gpu.present) return;
+    const PosedModel tube(tubeModel({24, 60}));
+    REQUIRE(tube.failure == "");
+    vulkan::RendererConfig config;
+    config.morphGroupCapacity = groupCount(tube.view);
+    config.jointCapacity = config.morphWeightCapacity = 8;
+    DepthStage stage(gpu, config);
+    const vulkan::InstanceHandle instance = stage.place(tube.view);
+    std::mt19937 random(1);
+    const RandomPose pose(tube.view, random, 0.6f);
+    XGC_REQUIRE_OK(stage.renderer.beginFrame());
+    XGC_REQUIRE_OK(stage.renderer.setPose(instance, pose.pose()));
+    const std::vector<uint8_t> levels(tube.view.patchCount(), 2);
+    const std::vector<float> fractions(tube.view.patchCount(), 0.4f);
+    XGC_REQUIRE_OK(stage.renderer.setLevels(instance, levels, fractions));
+    stage.renderer.endFrame();
+    const DepthStage::Depths depths = stage.draw(viewOf(tube.view));
+    CHECK(drawn(depths.shaded) > kSize * kSize / 30);
+    CHECK(depths.shaded == depths.alone);
 }
 
 namespace {

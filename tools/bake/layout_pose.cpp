@@ -48,6 +48,10 @@ public:
         eachWeight(wedge, [&](uint32_t, double w) { total += w; });
         if (total > 0) eachWeight(wedge, [&](uint32_t joint, double w) { addTerm(joint, factor * w / total, arm); });
     }
+    template <typename Take>
+    void eachJoint(const Take& take) const {
+        for (const Term& t : terms_) take(t.joint);
+    }
     format::SkinError norm() const {
         double weight = 0, moment = 0;
         for (const Term& t : terms_) {
@@ -100,6 +104,7 @@ public:
         std::vector<uint32_t> marks(h.wedgePosition.size(), 0);
         for (uint32_t p = 0; p < h.patchCount(); ++p) gatherWedges(p, marks);
         neighbours_.resize(h.patchCount());
+        compared_.resize(h.patchCount());
         for (const std::vector<uint32_t>& set : h.domainPatches) {
             for (const uint32_t p : set) neighbours_[p].insert(neighbours_[p].end(), set.begin(), set.end());
         }
@@ -118,14 +123,14 @@ public:
         std::vector<format::PatchJoint> patchJoints;
         for (uint32_t p = 0; p < records.size(); ++p) {
             records[p].firstJoint = uint32_t(patchJoints.size());
-            addPatchJoints(p, patchJoints);
+            addPatchJoints(p, records[p], patchJoints);
             records[p].jointCount = uint32_t(patchJoints.size()) - records[p].firstJoint;
         }
         file.section<format::JointRecord>(format::SectionId::skins, joints);
         file.section<format::PatchJoint>(format::SectionId::patchJoints, patchJoints);
     }
 
-    /// Both errors of all levels; `records`: for the centres of the spheres.
+    /// Both errors of all levels, first of all; `records`: for the centres of the spheres.
     void measure(std::span<const format::PatchRecord> records, FileBuilder& file) {
         const size_t entries = size_t(h_.patchCount()) * h_.levelCount;
         skin_.assign(mesh_.skins.empty() ? 0 : entries, {});
@@ -194,7 +199,7 @@ private:
         }
     }
 
-    void addPatchJoints(uint32_t patch, std::vector<format::PatchJoint>& out) const {
+    void addPatchJoints(uint32_t patch, const format::PatchRecord& record, std::vector<format::PatchJoint>& out) const {
         std::vector<std::pair<uint32_t, uint32_t>> moves; ///< joint, wedge
         const Attributes& a = h_.attributes;
         for (const uint32_t w : wedges_[patch]) {
@@ -204,11 +209,17 @@ private:
                 }
             }
         }
+        // Of neighbours that the errors compare with: they move no row of the patch, and have a sphere of no size.
+        for (const uint32_t joint : compared_[patch]) moves.emplace_back(joint, kNone);
         std::sort(moves.begin(), moves.end());
         for (size_t i = 0; i < moves.size();) {
             std::vector<glm::vec3> points;
             const uint32_t joint = moves[i].first;
-            for (; i < moves.size() && moves[i].first == joint; ++i) points.push_back(position(moves[i].second));
+            for (; i < moves.size() && moves[i].first == joint; ++i) {
+                if (moves[i].second != kNone) points.push_back(position(moves[i].second));
+            }
+            if (points.empty())
+                points.push_back({record.sphereCenter[0], record.sphereCenter[1], record.sphereCenter[2]});
             const Sphere sphere = boundsOf(points).sphere;
             out.push_back({joint, {sphere.center.x, sphere.center.y, sphere.center.z}, sphere.radius, {}});
         }
@@ -265,6 +276,10 @@ private:
             if (pair.weights[k] != 0)
                 sum_.add(-pair.weights[k], pair.wedges[k], glm::dvec3(position(pair.wedges[k])) - center);
         }
+        std::vector<uint32_t>& joints = compared_[at / h_.levelCount];
+        sum_.eachJoint([&](uint32_t joint) {
+            if (std::find(joints.begin(), joints.end(), joint) == joints.end()) joints.push_back(joint);
+        });
         const format::SkinError error = sum_.norm();
         skin_[at].weight = std::max(skin_[at].weight, error.weight);
         skin_[at].moment = std::max(skin_[at].moment, error.moment);
@@ -284,6 +299,7 @@ private:
     JointSum sum_;
     std::vector<uint8_t> near_; ///< a patch each: compared with first
     std::vector<std::vector<uint32_t>> neighbours_, wedges_;
+    std::vector<std::vector<uint32_t>> compared_; ///< joints in the errors of a patch
     std::vector<size_t> cornerCount_;
     size_t targets_ = 0;
     std::vector<format::SkinError> skin_;
@@ -296,9 +312,9 @@ void addPose(const Mesh& mesh, const Hierarchy& h, const Faces& faces, const Row
              std::span<const format::Text> targetNames, std::span<format::PatchRecord> records, FileBuilder& file) {
     if (mesh.skins.empty() && h.attributes.morphTargets.empty()) return;
     PoseTables tables(mesh, h, faces, errors);
+    tables.measure(records, file);
     if (!mesh.skins.empty()) tables.addJoints(records, file);
     if (!h.attributes.morphTargets.empty()) tables.addTargets(rows, targetNames, file);
-    tables.measure(records, file);
 }
 
 } // namespace xgc::bake::layout
