@@ -1,0 +1,243 @@
+// A scene that uses all of it: a hundred creatures around a temple on a terrain, and an animal that runs by its joints,
+// in the sun with shadows, every part at a level of its own. Writes a picture a frame.
+#include "clip.h"
+#include "world.h"
+
+#include <xgc/bake/image.h>
+#include <xgc/vulkan/headless_device.h>
+#include <xgc/vulkan/offscreen.h>
+#include <xgc/vulkan/renderer.h>
+#include <xgc/vulkan/shadow_map.h>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <glm/glm.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace {
+
+using namespace xgc;
+using namespace xgc::scene_sample;
+
+constexpr uint32_t kCreatures = 100;
+
+struct Options {
+    std::filesystem::path creature, temple, terrain, fox, animation, output;
+    std::string clip = "Run";
+    std::string mode = "shaded";
+    uint32_t width = 1280, height = 720;
+    uint32_t frames = 1;
+    uint32_t shadowTexels = 4096;
+    float errorPixels = 1;
+    bool still = false;
+};
+
+// Destroyed from the last up: the target waits for its frames before anything that they use goes.
+struct App {
+    Options options;
+    LoadedAsset creature, temple, terrain, fox;
+    Clip clip;
+    World world;
+    vulkan::HeadlessDevice device;
+    vulkan::Context context;
+    vulkan::Renderer renderer;
+    vulkan::ShadowMap shadows;
+    vulkan::Offscreen target;
+    vulkan::InstanceHandle runner;
+    std::vector<vulkan::AssetHandle> handles;
+};
+
+bake::Status fromRuntime(const Status& status) {
+    if (status.ok()) return {};
+    return bake::systemError(fmt::format("{} ({})", status.message, int64_t(status.element)));
+}
+
+bake::Status load(App& app) {
+    const Options& o = app.options;
+    const std::pair<LoadedAsset*, const std::filesystem::path*> files[] = {
+        {&app.creature, &o.creature}, {&app.temple, &o.temple}, {&app.terrain, &o.terrain}, {&app.fox, &o.fox}};
+    for (const auto& [asset, file] : files) {
+        const bake::Status status = asset->load(*file);
+        if (!status.ok()) return status;
+    }
+    app.world = makeWorld({app.creature.view, app.temple.view, app.terrain.view, app.fox.view}, kCreatures);
+    return o.animation.empty() ? bake::Status{} : Clip::read(o.animation, o.clip, app.clip);
+}
+
+vulkan::RendererConfig configFor(const App& app) {
+    const AssetView* one[] = {&app.creature.view, &app.temple.view, &app.terrain.view, &app.fox.view};
+    vulkan::RendererConfig config = vulkan::configFor(one, 1);
+    config.instanceCapacity = kCreatures + 4;
+    config.patchCapacity += kCreatures * app.creature.view.patchCount();
+    config.indexBytes += 64u << 20;
+    config.viewCapacity = 2;
+    return config;
+}
+
+Status addAll(App& app) {
+    const std::pair<const AssetView*, std::vector<glm::mat4>> all[] = {{&app.creature.view, app.world.creatures},
+                                                                       {&app.temple.view, {app.world.temple}},
+                                                                       {&app.terrain.view, {app.world.terrain}},
+                                                                       {&app.fox.view, {app.world.fox}}};
+    for (const auto& [asset, places] : all) {
+        vulkan::AssetHandle handle;
+        Status status = app.renderer.addAsset(*asset, handle);
+        if (!status.ok()) return status;
+        app.handles.push_back(handle);
+        for (const glm::mat4& place : places) {
+            status = app.renderer.addInstance(handle, makePlacement(place), app.runner); // the fox is the last
+            if (!status.ok()) return status;
+        }
+    }
+    return {};
+}
+
+Status createDevice(App& app) {
+    Status status = app.device.create();
+    if (status.ok()) status = app.context.create(app.device.contextDesc());
+    if (!status.ok()) return status;
+    vulkan::OffscreenDesc target;
+    target.size = {app.options.width, app.options.height};
+    target.supersampling = app.options.still ? 2 : 1;
+    const vulkan::RendererConfig config = configFor(app);
+    status = app.renderer.create(app.context, config);
+    if (status.ok()) status = app.shadows.create(app.context, app.options.shadowTexels);
+    if (status.ok()) status = app.target.create(app.context, app.device.queue(), target);
+    if (status.ok()) status = addAll(app);
+    return status;
+}
+
+/// The pose of the moment; without an animation, a slow wave through the joints.
+Status pose(App& app, float second) {
+    const AssetView& asset = app.fox.view;
+    if (asset.joints.empty()) return {};
+    std::vector<glm::mat4> nodes(asset.nodes.size());
+    std::vector<glm::mat4x3> joints(asset.joints.size());
+    const float length = std::max(app.clip.seconds(), 1e-3f);
+    app.clip.sample(asset, std::fmod(second, length), nodes);
+    if (app.options.animation.empty()) {
+        for (size_t j = 1; j < asset.joints.size(); ++j) {
+            const float bend = 0.25f * std::sin(3 * second + float(j));
+            nodes[asset.joints[j].node] *=
+                glm::mat4(glm::mat3(1, 0, 0, 0, std::cos(bend), std::sin(bend), 0, -std::sin(bend), std::cos(bend)));
+        }
+    }
+    nodesToMesh(asset, nodes, nodes);
+    jointMatrices(asset, nodes, joints);
+    return app.renderer.setPose(app.runner, {joints, {}});
+}
+
+vulkan::ViewDesc viewFor(const App& app, const vulkan::SunView& sunView, const glm::vec3& towards) {
+    vulkan::ViewDesc view;
+    view.mode = *vulkan::modeNamed(app.options.mode);
+    view.camera.eye = app.world.eye;
+    view.camera.target = app.world.target;
+    view.camera.fovY = 0.62f;
+    view.camera.aspect = float(app.options.width) / float(app.options.height);
+    view.camera.nearPlane = 0.05f;
+    view.sun = vulkan::Sun{
+        towards,           {1.9f, 1.68f, 1.35f}, app.shadows.depths(), app.shadows.texels(), sunView.worldToClip,
+        sunView.texelUnits};
+    return view;
+}
+
+/// The camera's levels, and the sun's: no caster is more than a level coarser than what is seen of it.
+void select(App& app, const vulkan::ViewDesc& view, const vulkan::SunView& sun) {
+    SelectionDesc desc;
+    desc.view = makeView(view.camera.eye, view.camera.fovY, float(app.options.height));
+    desc.view.nearest = view.camera.nearPlane;
+    desc.frustum = makeFrustum(view.camera.worldToClip());
+    desc.pixels = app.options.errorPixels;
+    app.renderer.select(0, desc);
+    SelectionDesc shadow;
+    shadow.view = sun.view;
+    shadow.frustum = makeFrustum(sun.worldToClip);
+    shadow.reference = &app.renderer.selection(0);
+    shadow.coarserThanReference = 1;
+    app.renderer.select(1, shadow);
+}
+
+Status drawFrame(App& app, float second, uint64_t& ticket) {
+    const glm::vec3 side = glm::normalize(app.world.eye - app.world.target);
+    const glm::vec3 towards = glm::normalize(glm::vec3(side.z, 0, -side.x) + 0.25f * side + glm::vec3(0, 0.75f, 0));
+    const vulkan::SunView sun = vulkan::sunView(towards, app.world.center, app.world.radius, app.options.shadowTexels);
+    const vulkan::ViewDesc view = viewFor(app, sun, towards);
+    Status status = app.renderer.beginFrame();
+    if (status.ok()) status = pose(app, second);
+    if (!status.ok()) return status;
+    select(app, view, sun);
+    app.renderer.endFrame();
+
+    VkCommandBuffer cmd = VK_NULL_HANDLE;
+    status = app.target.begin(cmd);
+    if (!status.ok()) return status;
+    app.renderer.recordTransfers(cmd);
+    app.shadows.begin(cmd);
+    status = app.renderer.recordDepth(cmd, {.view = 1, .worldToClip = sun.worldToClip});
+    app.shadows.end(cmd);
+    app.target.beginRendering(cmd, std::array{0.0f, 0.0f, 0.0f, 1.0f});
+    app.renderer.recordBackground(cmd);
+    if (status.ok()) status = app.renderer.recordDraws(cmd, view);
+    app.target.endRendering(cmd);
+    if (!status.ok()) return status;
+    return app.target.submit(std::array{app.renderer.frameDone()}, ticket);
+}
+
+bake::Status writeFrame(App& app, uint64_t ticket, uint32_t frame) {
+    bake::Image image{app.options.width, app.options.height, {}};
+    image.pixels.resize(size_t(image.width) * image.height);
+    const Status read = app.target.read(ticket, std::as_writable_bytes(std::span(image.pixels)));
+    if (!read.ok()) return fromRuntime(read);
+    const vulkan::FrameStats& stats = app.renderer.stats();
+    fmt::print("{{\"frame\": {}, \"triangles\": {}, \"draws\": {}, \"uploadBytes\": {}}}\n", frame, stats.triangles,
+               stats.draws, stats.uploadBytes);
+    return bake::writePng(image, app.options.output / fmt::format("frame_{:04}.png", frame));
+}
+
+bake::Status run(App& app) {
+    bake::Status status = load(app);
+    if (status.ok()) status = fromRuntime(createDevice(app));
+    if (!status.ok()) return status;
+    std::error_code error;
+    std::filesystem::create_directories(app.options.output, error);
+    if (error) return bake::systemError(fmt::format("{}: {}", app.options.output.string(), error.message()));
+    uint64_t ticket = 0;
+    do { // assets arrive in pieces
+        status = fromRuntime(drawFrame(app, 0, ticket));
+    } while (status.ok() && app.renderer.stats().uploadBytes > 0);
+    for (uint32_t frame = 0; status.ok() && frame < app.options.frames; ++frame) {
+        status = fromRuntime(drawFrame(app, 0.3f + float(frame) / 30, ticket));
+        if (status.ok()) status = writeFrame(app, ticket, frame);
+    }
+    return status;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    App app;
+    Options& o = app.options;
+    CLI::App cli{"xgc_scene: creatures, a temple, a terrain and a runner in the sun"};
+    cli.add_option("--creature", o.creature, ".xgc file")->required();
+    cli.add_option("--temple", o.temple, ".xgc file")->required();
+    cli.add_option("--terrain", o.terrain, ".xgc file")->required();
+    cli.add_option("--runner", o.fox, ".xgc file with a skin, such as Khronos' Fox")->required();
+    cli.add_option("--animation", o.animation, "The .glb that the runner was baked from: its clip is played");
+    cli.add_option("--clip", o.clip, "Name of the clip")->capture_default_str();
+    cli.add_option("-o,--output", o.output, "Folder for frame_0000.png and on")->required();
+    cli.add_option("--frames", o.frames, "Pictures to draw, 30 a second")->capture_default_str();
+    cli.add_option("--width", o.width)->check(CLI::Range(1, 4096))->capture_default_str();
+    cli.add_option("--height", o.height)->check(CLI::Range(1, 4096))->capture_default_str();
+    cli.add_option("--error-pixels", o.errorPixels)->check(CLI::NonNegativeNumber)->capture_default_str();
+    cli.add_option("--mode", o.mode, "How it is coloured")
+        ->check(CLI::IsMember({"shaded", "parts", "levels", "wire"}))
+        ->capture_default_str();
+    cli.add_flag("--still", o.still, "Draws at twice the size and halves the picture");
+    CLI11_PARSE(cli, argc, argv);
+    const bake::Status status = run(app);
+    if (!status.ok()) fmt::print(stderr, "xgc_scene: {}\n", status.message);
+    return int(status.outcome);
+}
