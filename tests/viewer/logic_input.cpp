@@ -186,11 +186,11 @@ TEST_CASE("the loader bakes models, opens assets, and says what is wrong with fi
 
 TEST_CASE("loading is given up when asked, and when the program ends") {
     Loader loader;
-    loader.request("creature"); // takes seconds
+    loader.request("terrain"); // takes seconds
     while (loader.progress().fraction == 0) usleep(1000);
     loader.request("temple");
     loader.cancel();
     CHECK(wait(loader).empty());
-    loader.request("creature");
+    loader.request("terrain");
     while (!loader.progress().busy) usleep(1000);
 }
