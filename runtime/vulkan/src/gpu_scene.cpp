@@ -185,6 +185,7 @@ void GpuScene::orderPatches(const Scene& scene, uint32_t id, std::vector<uint32_
 
 Status GpuScene::addAsset(const Scene& scene, uint32_t id, std::span<const uint8_t> partColors) {
     const AssetView& asset = *scene.asset(id).asset;
+    if (asset.residence) return {StatusCode::unsupported, "the compute path draws no streamed assets", 0};
     for (uint32_t p = 0; p < asset.patchCount(); ++p) {
         if (asset.patches[p].domainCount <= shader::kMaxPatchDomains) continue;
         return {StatusCode::unsupported, "the compute path draws no patch of more than 1024 domains", p};

@@ -262,7 +262,7 @@ const char* Renderer::Impl::hostReason(uint32_t view, const SelectionDesc& desc)
     if (view >= config.gpu.views) return "GpuPathConfig::views";
     if (gpuLacks) return gpuLacks;
     if (poseCount > 0) return "an instance with a pose";
-    if (assetsOffGpu > 0) return "an asset with a patch of more than 1024 domains";
+    if (assetsOffGpu > 0) return "an asset that is streamed, or has a patch of more than 1024 domains";
     return GpuView::lacks(desc);
 }
 
