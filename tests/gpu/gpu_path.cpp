@@ -108,7 +108,7 @@ TEST_CASE("the device's draws give the host's pictures, in every mode") {
     if (!gpu.present) return;
     Stage hostStage(gpu, {}, target()), stage(gpu, onDevice(), target());
     Field host(hostStage), device(stage);
-    for (int i = 0; i < 10; ++i) {
+    for (int i = 0; i < 5; ++i) {
         for (Field* field : {&host, &device}) {
             field->view.mode = vulkan::ShadingMode(i % 5 == 4 ? 3 : 0);
             field->desc.pixels = 0.5f + 0.25f * float(i);
@@ -134,9 +134,9 @@ TEST_CASE("occlusion hides nothing that is visible") {
     stage.renderer.useOcclusion(0, true);
     field.occludes = true;
     uint64_t all = 0, drawn = 0, late = 0;
-    for (int i = 0; i < 48; ++i) {
+    for (int i = 0; i < 32; ++i) {
         // Slowly, then in leaps.
-        const float t = i < 24 ? 0.02f * float(i) : 0.7f * float(i);
+        const float t = i < 16 ? 0.02f * float(i) : 0.7f * float(i);
         if (i % 8 == 7) {
             const Placement there = makePlacement(glm::translate(glm::mat4(1), glm::vec3(0, 0, i % 16 == 7 ? 6 : -30)));
             for (const auto& [f, s] : {std::pair(&plain, &plainStage), std::pair(&field, &stage)}) {
