@@ -18,6 +18,11 @@ std::span<const VertexStream> streamsOf(const AssetView& view) {
 
 /// What shaders read: anything else is stored for the host's own passes, or refused.
 Status checkStreams(const AssetView& view) {
+    if (view.residence)
+        return {StatusCode::unsupported,
+                "the backend draws assets that are in memory as wholes: open the file with "
+                "xgc::decode and openAll",
+                0};
     bool hasPositions = false;
     for (const VertexStream& s : streamsOf(view)) {
         if (s.kind != format::StreamKind::position) continue;
