@@ -41,7 +41,7 @@ void bakeModel(bake::BundledModel which, uint32_t faces, Baked& out) {
     options.output = folder / "out.xgc";
     options.patchFaces = 512;
     options.pages.tiers = 4;
-    options.pages.pageBytes = 64 * 1024;
+    options.pages.pageBytes = 16 * 1024;
     bake::BakeReport report;
     bake::Status s = bake::exportModel(bake::makeModel(which, faces), options.input);
     if (s.ok()) s = bake::bake(options, report);
