@@ -74,6 +74,7 @@ vulkan::RendererConfig configFor(const App& app) {
     config.patchCapacity += kCreatures * app.creature.view.patchCount();
     config.indexBytes += 64u << 20;
     config.viewCapacity = 2;
+    config.waitNanoseconds = 120'000'000'000; // a software device takes its time
     return config;
 }
 
@@ -139,7 +140,7 @@ vulkan::ViewDesc viewFor(const App& app, const vulkan::SunView& sunView, const g
     view.camera.aspect = float(app.options.width) / float(app.options.height);
     view.camera.nearPlane = 0.05f;
     view.sun = vulkan::Sun{
-        towards,           {1.9f, 1.68f, 1.35f}, app.shadows.depths(), app.shadows.texels(), sunView.worldToClip,
+        towards,           {1.0f, 0.9f, 0.74f}, app.shadows.depths(), app.shadows.texels(), sunView.worldToClip,
         sunView.texelUnits};
     return view;
 }
@@ -161,8 +162,7 @@ void select(App& app, const vulkan::ViewDesc& view, const vulkan::SunView& sun) 
 }
 
 Status drawFrame(App& app, float second, uint64_t& ticket) {
-    const glm::vec3 side = glm::normalize(app.world.eye - app.world.target);
-    const glm::vec3 towards = glm::normalize(glm::vec3(side.z, 0, -side.x) + 0.25f * side + glm::vec3(0, 0.75f, 0));
+    const glm::vec3 towards = app.world.towardsSun;
     const vulkan::SunView sun = vulkan::sunView(towards, app.world.center, app.world.radius, app.options.shadowTexels);
     const vulkan::ViewDesc view = viewFor(app, sun, towards);
     Status status = app.renderer.beginFrame();

@@ -1,5 +1,7 @@
 #include "world.h"
 
+#include <xgc/indices.h>
+
 #include <fmt/format.h>
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -10,7 +12,7 @@
 namespace xgc::scene_sample {
 namespace {
 
-constexpr float kTerrainHalf = 24; ///< world units from the middle of the terrain to its border
+constexpr float kTerrainScale = 11;
 
 glm::vec3 low(const AssetView& a) {
     return {a.record->boundsMin[0], a.record->boundsMin[1], a.record->boundsMin[2]};
@@ -38,9 +40,18 @@ bake::Status LoadedAsset::load(const std::filesystem::path& file) {
     return bake::badInput(fmt::format("{}: {} (element {})", file.string(), opened.message, opened.element));
 }
 
-Ground::Ground(const AssetView& terrain, const glm::mat4& toWorld) : heights_(kCells * kCells, -1e30f) {
+Ground::Ground(const AssetView& asset, const glm::mat4& toWorld, std::string_view material)
+    : heights_(kCells * kCells, -1e30f) {
+    const std::vector<uint8_t> levels(asset.patchCount(), 0);
+    std::vector<uint32_t> scratch(scratchCapacity(asset)), rows;
     std::vector<glm::vec3> points;
-    for (const glm::vec3& p : terrain.positions) points.emplace_back(toWorld * glm::vec4(p, 1));
+    for (uint32_t p = 0; p < asset.patchCount(); ++p) {
+        const format::MaterialRecord& m = asset.materials[asset.patches[p].material];
+        if (!material.empty() && asset.text(m.name) != material) continue;
+        rows.resize(indexCapacity(asset, p, levels));
+        rows.resize(buildIndices(asset, p, levels, scratch, rows));
+        for (const uint32_t row : rows) points.emplace_back(toWorld * glm::vec4(asset.positions[row], 1));
+    }
     for (const glm::vec3& p : points) half_ = std::max({half_, std::fabs(p.x), std::fabs(p.z)});
     for (const glm::vec3& p : points) {
         const auto at = [&](float v) { return std::clamp(int((v / half_ + 1) * 0.5f * kCells), 0, kCells - 1); };
@@ -74,78 +85,76 @@ float Ground::height(float x, float z) const {
                     b);
 }
 
-float Ground::roughness(float x, float z, float radius) const {
-    float least = 1e30f, most = -1e30f;
-    for (int i = 0; i < 24; ++i) {
-        const float angle = 2.399963f * float(i), r = radius * std::sqrt(float(i) / 23);
+glm::vec2 Ground::range(float x, float z, float radius) const {
+    glm::vec2 out(1e30f, -1e30f);
+    for (int i = 0; i < 64; ++i) {
+        const float angle = 2.399963f * float(i), r = radius * std::sqrt(float(i) / 63);
         const float h = height(x + r * std::cos(angle), z + r * std::sin(angle));
-        least = std::min(least, h);
-        most = std::max(most, h);
+        out = {std::min(out.x, h), std::max(out.y, h)};
     }
-    return most - least;
+    return out;
 }
 
-glm::vec3 Ground::flattest(float radius, float within) const {
-    glm::vec3 best(0);
+glm::vec2 Ground::flattest(float radius, float within) const {
+    glm::vec2 best(0);
     float least = 1e30f;
     for (int j = -20; j <= 20; ++j) {
         for (int i = -20; i <= 20; ++i) {
-            const float x = within * float(i) / 20, z = within * float(j) / 20, rough = roughness(x, z, radius);
-            if (rough >= least) continue;
-            least = rough;
-            best = {x, height(x, z), z};
+            const glm::vec2 at = within * glm::vec2(i, j) / 20.0f, heights = range(at.x, at.y, radius);
+            if (heights.y - heights.x >= least) continue;
+            least = heights.y - heights.x;
+            best = at;
         }
     }
     return best;
 }
 
+namespace {
+
+/// A number from 0 to 1 that looks random.
+float scattered(uint32_t i) {
+    const float v = std::sin(12.9898f * float(i + 1)) * 43758.5453f;
+    return v - std::floor(v);
+}
+
+/// Creatures left and right of the way to the temple, each turned to it more or less.
+void placeCreatures(const AssetView& creature, const Ground& lawn, const glm::vec3& fox, uint32_t count, World& world) {
+    std::vector<glm::vec2> taken{{fox.x, fox.z}};
+    for (uint32_t i = 0; world.creatures.size() < count && i < 4000; ++i) {
+        const glm::vec2 at(16.4f * scattered(2 * i) - 8.2f, 17 * scattered(2 * i + 1) - 5);
+        const bool onWay = std::fabs(at.x) < 3.1f && at.y > 5.2f, inTemple = std::fabs(at.x) < 4.2f && at.y < 5.8f;
+        const bool crowded = std::any_of(taken.begin(), taken.end(), [&](const glm::vec2& other) {
+            return glm::distance(at, other) < (other == taken[0] ? 1.5f : 0.8f);
+        });
+        if (onWay || inTemple || crowded) continue;
+        taken.push_back(at);
+        const float facing = std::atan2(-at.x, -at.y) + 1.6f * (scattered(i + 7) - 0.5f);
+        const glm::vec3 feet(at.x, lawn.height(at.x, at.y) - 0.02f, at.y);
+        world.creatures.push_back(standing(creature, feet, 0.62f + 0.3f * scattered(i + 3), facing));
+    }
+}
+
+} // namespace
+
+/// The temple in the middle with its lawn, the terrain's flattest place below it, the eye before it.
 World makeWorld(const WorldAssets& assets, uint32_t creatureCount) {
     World world;
-    const glm::vec3 size = high(assets.terrain) - low(assets.terrain),
-                    middle = 0.5f * (low(assets.terrain) + high(assets.terrain));
-    world.terrain = glm::scale(glm::mat4(1), glm::vec3(2 * kTerrainHalf / std::max(size.x, size.z)));
-    world.terrain = glm::translate(world.terrain, -glm::vec3(middle.x, low(assets.terrain).y, middle.z));
-    const Ground ground(assets.terrain, world.terrain);
-
-    const glm::vec3 site = ground.flattest(5.0f, 14);
-    world.temple = standing(assets.temple, site - glm::vec3(0, 0.12f, 0), 3.0f, 0.35f);
-
-    // The eye looks at the temple from the open side, low over the ground; the fox stands before it.
-    float best = 1e30f;
-    glm::vec2 side(0, 1);
-    for (int i = 0; i < 32; ++i) {
-        const glm::vec2 way(std::cos(0.19635f * float(i)), std::sin(0.19635f * float(i)));
-        float worst = 0;
-        for (float r = 3; r <= 11; r += 0.5f) {
-            worst = std::max(worst, ground.height(site.x + r * way.x, site.z + r * way.y) - site.y);
-        }
-        const float rise = worst + 0.02f * std::fabs(float(i) - 8);
-        if (rise >= best) continue;
-        best = rise;
-        side = way;
-    }
-    const glm::vec2 across(-side.y, side.x);
-    const auto at = [&](float away, float aside) {
-        const glm::vec2 p = glm::vec2(site.x, site.z) + away * side + aside * across;
-        return glm::vec3(p.x, ground.height(p.x, p.y), p.y);
-    };
-    world.eye = at(11.5f, 0.6f) + glm::vec3(0, 1.9f, 0);
-    world.target = site + glm::vec3(0, 0.9f, 0);
-    const glm::vec3 foxFeet = at(8.9f, 1.15f);
-    world.fox = standing(assets.fox, foxFeet, 0.8f, std::atan2(-across.x, -across.y) + 0.35f);
-
-    for (uint32_t i = 0; world.creatures.size() < creatureCount && i < 40 * creatureCount; ++i) {
-        const float angle = 2.399963f * float(i), r = 2.6f + 0.42f * std::sqrt(float(i));
-        const glm::vec2 p(site.x + r * std::cos(angle), site.z + r * std::sin(angle));
-        const bool inView = glm::distance(p, {world.eye.x, world.eye.z}) > 3.4f;
-        const bool clear = glm::distance(p, {foxFeet.x, foxFeet.z}) > 1.3f;
-        if (!inView || !clear || ground.roughness(p.x, p.y, 0.3f) > 0.5f) continue;
-        const float jitter = std::sin(12.9898f * float(i)) * 43758.5453f, random = jitter - std::floor(jitter);
-        const float facing = std::atan2(site.x - p.x, site.z - p.y) + 1.4f * (random - 0.5f);
-        const glm::vec3 feet(p.x, ground.height(p.x, p.y) - 0.02f, p.y);
-        world.creatures.push_back(standing(assets.creature, feet, 0.5f + 0.25f * random, facing));
-    }
-    world.center = site;
+    const Ground lawn(assets.temple, world.temple, "earth");
+    const glm::mat4 scaled = glm::scale(glm::mat4(1), glm::vec3(kTerrainScale));
+    const Ground terrain(assets.terrain, scaled);
+    const glm::vec2 site = terrain.flattest(7, 16);
+    const float floor = terrain.range(site.x, site.y, 9).y + 0.1f;
+    // Turned so that the middle of the terrain, with its mountains, lies behind the temple.
+    const float turn = std::atan2(site.x, site.y);
+    const glm::mat4 turned = glm::rotate(glm::mat4(1), -turn, {0, 1, 0});
+    world.terrain = turned * glm::translate(glm::mat4(1), {-site.x, -floor, -site.y}) * scaled;
+    const glm::vec3 feet(-0.2f, lawn.height(-0.2f, 11.9f), 11.9f);
+    world.fox = standing(assets.fox, feet, 1.0f, 1.25f);
+    placeCreatures(assets.creature, lawn, feet, creatureCount, world);
+    world.eye = {4.2f, 2.4f, 18.4f};
+    world.target = {0.2f, 2.65f, 3.0f};
+    world.towardsSun = glm::normalize(glm::vec3(0.45f, 0.95f, 0.6f));
+    world.center = {0, 1, 3};
     world.radius = 15;
     return world;
 }

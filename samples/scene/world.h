@@ -5,6 +5,7 @@
 #include <xgc/select.h>
 
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 namespace xgc::scene_sample {
@@ -17,19 +18,20 @@ struct LoadedAsset {
     bake::Status load(const std::filesystem::path& file);
 };
 
-/// Heights of a terrain in world space, on a grid.
+/// Heights of a surface in world space, on a grid.
 class Ground {
 public:
-    Ground(const AssetView& terrain, const glm::mat4& toWorld);
+    /// Of the patches of a material, by name, or of all.
+    Ground(const AssetView& asset, const glm::mat4& toWorld, std::string_view material = {});
 
     float height(float x, float z) const;
-    /// Largest difference of heights in a circle.
-    float roughness(float x, float z, float radius) const;
-    /// Of the places within `within` of the middle, the flattest circle.
-    glm::vec3 flattest(float radius, float within) const;
+    /// Least and largest height in a circle.
+    glm::vec2 range(float x, float z, float radius) const;
+    /// Of the places within `within` of the middle, the middle of the flattest circle.
+    glm::vec2 flattest(float radius, float within) const;
 
 private:
-    static constexpr int kCells = 256;
+    static constexpr int kCells = 128;
     float cell(int x, int z) const;
 
     float half_ = 1;
@@ -41,6 +43,7 @@ struct World {
     glm::mat4 terrain{1}, temple{1}, fox{1};
     std::vector<glm::mat4> creatures;
     glm::vec3 eye{0}, target{0};
+    glm::vec3 towardsSun{0, 1, 0};
     glm::vec3 center{0}; ///< of what casts shadows
     float radius = 1;
 };
