@@ -23,7 +23,7 @@ constexpr uint32_t kSize = 192;
 /// A depth map, and a picture with a depth to copy out: what the shaded pass leaves beside what the depth pass does.
 class DepthStage {
 public:
-    explicit DepthStage(const Gpu& gpu, vulkan::RendererConfig config = {}) : gpu_(gpu), vk_(gpu.context.vk()) {
+    explicit DepthStage(const Gpu& gpu, vulkan::RendererConfig config = {}) : vk_(gpu.context.vk()) {
         config.samples = VK_SAMPLE_COUNT_1_BIT;
         XGC_REQUIRE_OK(renderer.create(gpu.context, config));
         const VkExtent2D size{kSize, kSize};
@@ -141,7 +141,6 @@ private:
                               {VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
     }
 
-    const Gpu& gpu_;
     const vulkan::Functions& vk_;
     vulkan::Attachment color_;
     std::array<vulkan::Attachment, 2> depths_;
