@@ -2,6 +2,7 @@
 
 #include "theme.h"
 
+#include <GLFW/glfw3.h>
 #include <imgui.h>
 
 #include <backends/imgui_impl_vulkan.h>
@@ -32,6 +33,14 @@ void mapKeys(ImGuiIO& io) {
     for (const auto& [name, key] : kKeys) io.KeyMap[name] = key;
 }
 
+void useClipboard(ImGuiIO& io, GLFWwindow* window) {
+    io.ClipboardUserData = window;
+    io.GetClipboardTextFn = [](void* user) { return glfwGetClipboardString(static_cast<GLFWwindow*>(user)); };
+    io.SetClipboardTextFn = [](void* user, const char* text) {
+        glfwSetClipboardString(static_cast<GLFWwindow*>(user), text);
+    };
+}
+
 } // namespace
 
 Interface::~Interface() {
@@ -43,13 +52,14 @@ Interface::~Interface() {
     if (pool_) vkDestroyDescriptorPool(device_->device(), pool_, nullptr);
 }
 
-bake::Status Interface::create(const Device& device, uint32_t framesInFlight, float scale) {
+bake::Status Interface::create(const Device& device, GLFWwindow* window, uint32_t framesInFlight, float scale) {
     device_ = &device;
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr; // the viewer starts as it is described
     io.BackendPlatformName = "xgc-viewer";
     mapKeys(io);
+    useClipboard(io, window);
     applyTheme(scale);
     const bake::Status status = createPass();
     if (!status.ok()) return status;

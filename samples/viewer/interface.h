@@ -13,7 +13,7 @@ public:
     Interface& operator=(const Interface&) = delete;
     ~Interface(); ///< the device is idle
 
-    bake::Status create(const Device& device, uint32_t framesInFlight, float scale);
+    bake::Status create(const Device& device, GLFWwindow* window, uint32_t framesInFlight, float scale);
     /// Again where the canvas was made anew. The device is idle.
     bake::Status attach(const Canvas& canvas);
 

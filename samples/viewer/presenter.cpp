@@ -17,7 +17,7 @@ bake::Status Presenter::create(Window& window) {
     for (Slot& slot : slots_) {
         if (status.ok()) status = createSlot(slot);
     }
-    if (status.ok()) status = interface_.create(device_, kFramesInFlight, window.contentScale());
+    if (status.ok()) status = interface_.create(device_, window.handle(), kFramesInFlight, window.contentScale());
     return status;
 }
 
