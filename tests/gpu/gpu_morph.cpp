@@ -83,7 +83,7 @@ TEST_CASE("from inside a closed surface no morph lets the background through") {
     const vulkan::InstanceHandle instance = stage.place(torus.view, {}, view);
     std::mt19937 random(2);
     const glm::vec3 directions[] = {{1, 0.1f, 0.2f}, {-1, 0.2f, 0.1f}, {0.1f, 1, 0}, {0, -1, 0.1f}, {0.1f, 0, 1}};
-    for (int i = 0; i < 12; ++i) {
+    for (int i = 0; i < 6; ++i) {
         const State state = randomState(torus.view, random);
         for (const glm::vec3& direction : directions) {
             view.camera.target = view.camera.eye + direction;
@@ -159,7 +159,7 @@ Flight flySlowly(const Gpu& gpu, const AssetView& asset, bool morphs) {
     Flight flight;
     Picture before;
     const glm::vec3 eye = view.camera.eye, target = view.camera.target;
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < 20; ++i) {
         SelectionDesc desc;
         desc.view = makeView(target + (eye - target) * (8 * std::pow(0.992f, float(i))), view.camera.fovY, 240);
         desc.pixels = 1;

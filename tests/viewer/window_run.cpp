@@ -55,8 +55,8 @@ bool hasDisplay() {
 
 ViewerRun runViewer(const std::string& arguments, const ViewerInput& input) {
     const std::string picture = workFile("picture.png"), report = workFile("report.json");
-    std::filesystem::remove(picture);
-    std::filesystem::remove(report);
+    const std::string status = workFile("status.txt");
+    for (const std::string& file : {picture, report, status}) std::filesystem::remove(file);
     std::string viewer =
         quoted(XGC_VIEWER) + " " + arguments + " --screenshot " + quoted(picture) + " --report " + quoted(report);
     if (!input.script.empty()) {
@@ -66,14 +66,17 @@ ViewerRun runViewer(const std::string& arguments, const ViewerInput& input) {
     std::string command = "env -u DISPLAY -u WAYLAND_DISPLAY " + viewer;
     if (input.display) {
         std::ofstream shell(workFile("run.sh"));
-        shell << (input.xdotool.empty() ? "exec " + viewer + "\n"
+        shell << (input.xdotool.empty() ? viewer + "\n"
                                         : viewer + " &\nviewer=$!\n" + input.xdotool + "\nwait $viewer\n");
+        // xvfb-run has exit codes of its own, such as where it cannot tidy up at once.
+        shell << "echo $? >" << quoted(status) << "\n";
         shell.close();
         // Xvfb's own remarks go to xvfb-run's log.
         command = "timeout 120 xvfb-run -a -s '-screen 0 1024x768x24' sh " + quoted(workFile("run.sh"));
     }
     ViewerRun run;
     run.exitCode = runShell(command, run.output);
+    if (std::ifstream own(status); own) own >> run.exitCode;
     INFO(run.output);
     for (const char* sign : {"VUID-", "SYNC-HAZARD", "UNASSIGNED-", "Validation Error", "Validation Warning"})
         CHECK(run.output.find(sign) == std::string::npos);
