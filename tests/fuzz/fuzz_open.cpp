@@ -1,5 +1,6 @@
 // Opens whatever bytes it is given, with their checksums made right so that the deep checks are reached, and draws
-// what opens. The corpus holds small assets, one with made vertices, one with shapes, contours and merges of its parts.
+// what opens. The corpus holds small assets: one with made vertices, one with shapes, contours and merges of its parts,
+// one that is cut into pages.
 #include "meshes/hostile.h"
 
 #include <cstdlib>
