@@ -1,6 +1,7 @@
 #include "counted_allocations.h"
 #include "meshes/patched_torus.h"
 #include "meshes/toy_asset.h"
+#include "random_placement.h"
 
 #include <xgc/parts.h>
 #include <xgc/selection.h>
@@ -11,7 +12,6 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <random>
 #include <thread>
 
 namespace {
@@ -19,25 +19,7 @@ namespace {
 using namespace xgc;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-class Random {
-public:
-    explicit Random(uint32_t seed) : engine_(seed) {}
-    uint32_t below(uint32_t n) { return uint32_t(engine_() % n); }
-    float between(float a, float b) { return a + (b - a) * float(engine_() % 100001u) / 100000.0f; }
-    glm::vec3 point(float size) { return {between(-size, size), between(-size, size), between(-size, size)}; }
-    glm::vec3 direction() { return glm::normalize(point(1) + glm::vec3(1e-3f)); }
-    /// Turned, stretched and mirrored at random.
-    Placement placement(float size) {
-        glm::mat4 m = glm::translate(glm::mat4(1), point(size));
-        m = glm::rotate(m, between(0, 6), direction());
-        const float mirror = below(2) ? 1.0f : -1.0f;
-        return makePlacement(glm::scale(m, glm::vec3(mirror * between(0.5f, 2), between(0.5f, 2), between(0.5f, 2))));
-    }
-
-private:
-    std::mt19937 engine_;
-};
+using test::Random;
 
 const test::OpenAsset& torus() {
     static const test::OpenAsset asset = test::openBuilt(test::patchedTorus({.patches = 6, .levels = 4}));

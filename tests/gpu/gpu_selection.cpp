@@ -2,6 +2,7 @@
 
 #include "meshes/baked_model.h"
 #include "meshes/patched_torus.h"
+#include "random_placement.h"
 
 #include "barriers.h"
 #include "gpu_view.h"
@@ -11,7 +12,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <cstring>
-#include <random>
 
 // The compute path beside the host's own: levels, places of instances, draws and index lists, bit for bit.
 
@@ -19,25 +19,6 @@ namespace {
 
 using namespace xgc;
 using namespace xgc::test;
-
-class Random {
-public:
-    explicit Random(uint32_t seed) : engine_(seed) {}
-    uint32_t below(uint32_t n) { return uint32_t(engine_() % n); }
-    float between(float a, float b) { return a + (b - a) * float(engine_() % 100001u) / 100000.0f; }
-    glm::vec3 point(float size) { return {between(-size, size), between(-size, size), between(-size, size)}; }
-    glm::vec3 direction() { return glm::normalize(point(1) + glm::vec3(1e-3f)); }
-    /// Turned, stretched and mirrored at random.
-    Placement placement(float size) {
-        glm::mat4 m = glm::translate(glm::mat4(1), point(size));
-        m = glm::rotate(m, between(0, 6), direction());
-        const float mirror = below(2) ? 1.0f : -1.0f;
-        return makePlacement(glm::scale(m, glm::vec3(mirror * between(0.5f, 2), between(0.5f, 2), between(0.5f, 2))));
-    }
-
-private:
-    std::mt19937 engine_;
-};
 
 /// A frame's commands and draws, as bytes that can be compared.
 struct Draws {
