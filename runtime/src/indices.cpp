@@ -182,8 +182,8 @@ uint32_t buildResident(const AssetView& asset, uint32_t patch, Levels levels, ui
     for (size_t i = 0; i < domains.size(); ++i) {
         const uint32_t level = domainLevel(asset, domains[i], levels), tier = asset.domains[domains[i]].tier;
         least = std::min(least, level);
+        if (tier >= tiers) continue;
         const format::VertexRange range = asset.domainRange(domains[i]);
-        if (tier >= tiers || range.count == 0) continue;
         resolve(parentsOf(tier, firsts[i]), firsts[i], aliveCount(asset, range, level), range, rep);
     }
     const ListedFaces list = listFor(asset, patch, least);

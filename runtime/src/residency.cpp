@@ -66,7 +66,7 @@ Residency::Impl::~Impl() {
 bool Residency::Impl::allocate() {
     pool = static_cast<std::byte*>(allocateBytes(size_t(slotCount * slotBytes), kAlignment));
     return pool && assets.allocate(config.assetCapacity) && slots.allocate(slotCount) &&
-           collapse.allocate(size_t(slotCount) * config.pageRows) && candidates.allocate(config.pageCapacity) &&
+           collapse.allocate((size_t(slotCount) + 1) * config.pageRows) && candidates.allocate(config.pageCapacity) &&
            victims.allocate(slotCount) && installed.allocate(slotCount);
 }
 
@@ -79,7 +79,7 @@ Status Residency::create(const ResidencyConfig& config) {
     impl->config = config;
     impl->slotBytes = alignUp(config.pageBytes);
     const uint64_t cost = impl->slotBytes + config.pageRows; // and a collapse level a row
-    const uint64_t count = std::min(config.budgetBytes / cost, uint64_t(UINT32_MAX) / config.pageRows);
+    const uint64_t count = std::min(config.budgetBytes / cost, uint64_t(UINT32_MAX) / config.pageRows - 1);
     if (count == 0) return outOfCapacity("ResidencyConfig: the budget holds no page: raise budgetBytes", cost);
     impl->slotCount = impl->freeSlots = uint32_t(count);
     impl->stats.slots = impl->slotCount;
@@ -115,7 +115,9 @@ Status Residency::addAsset(const AssetView& tables, uint32_t& id) {
         return outOfCapacity("too many pages: raise ResidencyConfig::pageCapacity", r.pageCount + tables.pages.size());
     std::unique_ptr<StreamedAsset> asset(new (std::nothrow) StreamedAsset);
     if (!asset) return outOfCapacity("not enough memory for the asset's tables", 0);
-    if (Status s = asset->create(tables, {r.collapse.data(), r.collapse.size()}); !s.ok()) return s;
+    if (Status s = asset->create(tables, {r.collapse.data(), r.collapse.size()}, r.slotCount * r.config.pageRows);
+        !s.ok())
+        return s;
     // One slot at least must be left to stream through.
     if (r.firstPages + asset->missingFirst + 1 > r.slotCount)
         return outOfCapacity("the first pages of all assets do not fit the budget: raise ResidencyConfig::budgetBytes",

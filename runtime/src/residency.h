@@ -59,15 +59,19 @@ struct StreamedAsset : Allocated<StreamedAsset> {
     FixedArray<float> urgency; ///< multiples of the error asked for, for a unit of error of the mesh
     FixedArray<uint8_t> drawnTier;
 
-    Status create(const AssetView& tables, std::span<const uint8_t> collapseLevels);
+    uint32_t deadRow = 0; ///< from here on rows of the pool are dead at every level
+
+    /// `collapseLevels`: of the pool's rows, and behind them `firstDeadRow` and on.
+    Status create(const AssetView& tables, std::span<const uint8_t> collapseLevels, uint32_t firstDeadRow);
+    uint32_t pageOf(uint32_t patch, uint32_t tier) const {
+        return tables.patchPages[size_t(patch) * tables.tierCount() + tier];
+    }
     bool isThere(uint32_t page) const {
         return pages[page].state == PageState::installed || pages[page].state == PageState::retiring;
     }
     std::span<const uint32_t> needsOf(uint32_t patch, uint32_t tier) const {
         return needs.of(size_t(patch) * tables.tierCount() + tier);
     }
-    /// True where all that the patch itself reads in the tier is there.
-    bool isReadable(uint32_t patch, uint32_t tier) const;
     /// Brings what depends on a page up to what is there.
     void refresh(uint32_t page, bool rowsMoved);
 
@@ -106,7 +110,7 @@ struct Residency::Impl : Allocated<Residency::Impl> {
     uint32_t slotCount = 0, freeSlots = 0;
     uint64_t slotBytes = 0;
     FixedArray<PoolSlot> slots;
-    FixedArray<uint8_t> collapse; ///< a row each
+    FixedArray<uint8_t> collapse; ///< a row each, and as many as a page may have that are dead
     struct Candidate {
         uint32_t asset, page;
         float value;

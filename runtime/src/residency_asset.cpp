@@ -5,13 +5,15 @@
 #include <algorithm>
 
 // What a patch needs. A patch q at a level of tier t lowers the domains that it shares, and so the lists by which its
-// neighbours draw: all of them must have their pages of the tiers up to t, and the rows of all domains of those:
+// neighbours draw: all of them must have their pages of the tiers up to t. Rows are needed of q's own domains alone:
+// all of the others' that lie in tier t have collapsed, unless a patch is finer there that needs them itself.
 //
-//     needs(q, t)  =  for each p that shares a domain with q, and q itself:
-//                         the page of (p, t), and the page of each domain of p in tier t
+//     needs(q, t)  =  the pages of (p, t), for q itself and each p that shares a domain with it,
+//                     and the pages of the domains of q in tier t
 //
 // So whether q may be at a tier depends on no other patch's level, and any choice of levels that each patch may have is
-// a state that can be drawn.
+// a state that can be drawn. Rows that are not there are dead: their range names rows behind the pool's that are so at
+// every level.
 
 namespace xgc {
 namespace {
@@ -25,32 +27,19 @@ bool makeRoom(Runs& runs) {
     return total <= UINT32_MAX && runs.items.allocate(total);
 }
 
-/// The pages that (patch, tier) reads, each once while `marks` has another `stamp`.
+/// Each page that (patch, tier) needs, once where `marks` has no `stamp` yet.
 template <typename Visit>
-void forPages(const StreamedAsset& a, uint32_t patch, uint32_t tier, FixedArray<uint32_t>& marks, uint32_t stamp,
+void forNeeds(const StreamedAsset& a, uint32_t patch, uint32_t tier, FixedArray<uint32_t>& marks, uint32_t stamp,
               const Visit& visit) {
     const auto touch = [&](uint32_t page) {
         if (marks[page] == stamp) return;
         marks[page] = stamp;
         visit(page);
     };
-    touch(a.tables.patchPages[size_t(patch) * a.tables.tierCount() + tier]);
+    touch(a.pageOf(patch, tier));
     for (const uint32_t d : a.tables.domainsOf(patch)) {
         if (a.tables.domains[d].tier == tier) touch(a.rangePages[d]);
-    }
-}
-
-template <typename Visit>
-void forNeeds(const StreamedAsset& a, uint32_t patch, uint32_t tier, FixedArray<uint32_t>& marks, uint32_t stamp,
-              FixedArray<uint32_t>& patchMarks, const Visit& visit) {
-    patchMarks[patch] = stamp;
-    forPages(a, patch, tier, marks, stamp, visit);
-    for (const uint32_t d : a.tables.domainsOf(patch)) {
-        for (const uint32_t p : a.tables.patchesOf(d)) {
-            if (patchMarks[p] == stamp) continue;
-            patchMarks[p] = stamp;
-            forPages(a, p, tier, marks, stamp, visit);
-        }
+        for (const uint32_t p : a.tables.patchesOf(d)) touch(a.pageOf(p, tier));
     }
 }
 
@@ -83,15 +72,14 @@ bool StreamedAsset::listMembers() {
 
 bool StreamedAsset::findNeeds() {
     const uint32_t tierCount = tables.tierCount();
-    FixedArray<uint32_t> marks, patchMarks, next;
-    if (!marks.allocate(pages.size()) || !patchMarks.allocate(tables.patchCount()) || !next.allocate(pages.size()))
-        return false;
+    FixedArray<uint32_t> marks, next;
+    if (!marks.allocate(pages.size()) || !next.allocate(pages.size())) return false;
     uint32_t stamp = 0;
     const auto forEach = [&](const auto& visit) {
         for (uint32_t p = 0; p < tables.patchCount(); ++p) {
             for (uint32_t t = 0; t < tierCount; ++t) {
                 const uint32_t entry = p * tierCount + t;
-                forNeeds(*this, p, t, marks, ++stamp, patchMarks, [&](uint32_t page) { visit(entry, page); });
+                forNeeds(*this, p, t, marks, ++stamp, [&](uint32_t page) { visit(entry, page); });
             }
         }
     };
@@ -109,8 +97,9 @@ bool StreamedAsset::findNeeds() {
     return true;
 }
 
-Status StreamedAsset::create(const AssetView& of, std::span<const uint8_t> collapseLevels) {
+Status StreamedAsset::create(const AssetView& of, std::span<const uint8_t> collapseLevels, uint32_t firstDeadRow) {
     tables = of;
+    deadRow = firstDeadRow;
     const Status noMemory = {StatusCode::outOfCapacity, "not enough memory for the asset's tables", 0};
     if (!allocate()) return noMemory;
     const PageMap map = {{contents.data(), contents.size()},
@@ -122,6 +111,7 @@ Status StreamedAsset::create(const AssetView& of, std::span<const uint8_t> colla
     if (!listMembers() || !findNeeds()) return noMemory;
     for (const PageRecord& page : tables.pages) missingFirst += page.tier == 0;
     std::fill_n(finestLevels.data(), finestLevels.size(), uint8_t(tables.levelCount() - 1));
+    for (size_t r = 0; r < ranges.size(); ++r) ranges[r] = {deadRow, tables.vertexRanges[r].count};
     residence = {{places.data(), places.size()},
                  {tierCounts.data(), tierCounts.size()},
                  {finestLevels.data(), finestLevels.size()},
@@ -133,18 +123,11 @@ Status StreamedAsset::create(const AssetView& of, std::span<const uint8_t> colla
     return {};
 }
 
-bool StreamedAsset::isReadable(uint32_t patch, uint32_t tier) const {
-    if (!isThere(tables.patchPages[size_t(patch) * tables.tierCount() + tier])) return false;
-    const std::span<const uint32_t> domains = tables.domainsOf(patch);
-    return std::all_of(domains.begin(), domains.end(),
-                       [&](uint32_t d) { return tables.domains[d].tier != tier || isThere(rangePages[d]); });
-}
-
 void StreamedAsset::refresh(uint32_t page, bool rowsMoved) {
     const uint32_t tierCount = tables.tierCount();
     for (const uint32_t p : dependents.of(page)) {
         uint32_t readable = 0, usable = 0;
-        while (readable < tierCount && isReadable(p, readable)) ++readable;
+        while (readable < tierCount && isThere(pageOf(p, readable))) ++readable;
         const auto stays = [&](uint32_t need) { return pages[need].state == PageState::installed; };
         const auto has = [&](uint32_t tier) {
             const std::span<const uint32_t> need = needsOf(p, tier);

@@ -9,8 +9,8 @@
 
 // What a page must be for its arrays to be followed without a test, as openAll has it for a whole file: collapse levels
 // that fall within each range, parents with lower slots, corners within the slots of their list. A row is its own
-// parent exactly where it never collapses; parents and the rows of their slots may come in different pages, so that is
-// looked at when the last of the pages comes that a patch reads in a tier.
+// parent exactly where it never collapses, and such rows lie in tier 0. There, parents and the rows of their slots may
+// come in different pages, so that is looked at for each patch when the last of its pages of that tier comes.
 
 namespace xgc {
 namespace {
@@ -54,7 +54,8 @@ Status checkRows(const StreamedAsset& a, uint32_t page, const Streams& streams) 
         uint8_t before = kNever;
         for (uint32_t i = 0; i < a.tables.vertexRanges[r].count; ++i) {
             const uint8_t level = levels[size_t(a.rangeRows[r]) + i];
-            if (level == 0 || (level >= a.tables.levelCount() && level != kNever) || level > before)
+            const bool known = level < a.tables.levelCount() || (level == kNever && a.tables.pages[page].tier == 0);
+            if (level == 0 || !known || level > before)
                 return corrupt("page with collapse levels that do not fall or are out of range", page);
             before = level;
         }
@@ -80,7 +81,8 @@ Status checkPatch(const StreamedAsset& a, uint32_t page, uint32_t p, const Slot*
     const uint32_t tier = a.tables.pages[page].tier;
     const PatchTier& t = a.patchTiers[size_t(p) * a.tables.tierCount() + tier];
     for (uint32_t i = 0; i < t.slotCount; ++i) {
-        if (parents[t.firstParent + size_t(i)] > t.firstSlot + i)
+        const Slot parent = parents[t.firstParent + size_t(i)];
+        if (tier == 0 ? parent > t.firstSlot + i : parent >= t.firstSlot + i)
             return corrupt("page with a parent behind its child", page);
     }
     corners += 3 * size_t(t.firstFace);
@@ -124,7 +126,7 @@ Status check(const StreamedAsset& a, uint32_t page, std::span<const std::byte> b
 
 template <typename Slot>
 bool rootsFit(const StreamedAsset& a, uint32_t firstSlot, VertexRange range, const PatchPlace& place) {
-    const Slot* parents = reinterpret_cast<const Slot*>(place.parents) + (firstSlot - place.firstSlot);
+    const Slot* parents = reinterpret_cast<const Slot*>(place.parents) + firstSlot; // tier 0 has the first slots
     for (uint32_t k = 0; k < range.count; ++k) {
         const bool isRoot = a.view.collapseLevels[size_t(range.first) + k] == kNever;
         if ((parents[k] == firstSlot + k) != isRoot) return false;
@@ -132,20 +134,24 @@ bool rootsFit(const StreamedAsset& a, uint32_t firstSlot, VertexRange range, con
     return true;
 }
 
-/// All pages are there that the patch reads in the tier.
-bool rootsFit(const StreamedAsset& a, uint32_t p, uint32_t tier) {
-    const PatchPlace& place = a.places[size_t(p) * a.tables.tierCount() + tier];
-    const auto fits = [&](uint32_t range, uint32_t firstSlot) {
-        return isWide(a, p) ? rootsFit<uint32_t>(a, firstSlot, a.ranges[range], place)
-                            : rootsFit<uint16_t>(a, firstSlot, a.ranges[range], place);
-    };
+/// In tier 0, of which all pages are there that the patch reads.
+bool rootsFit(const StreamedAsset& a, uint32_t p) {
+    const PatchPlace& place = a.places[size_t(p) * a.tables.tierCount()];
     const std::span<const uint32_t> domains = a.tables.domainsOf(p), firsts = a.tables.domainSlotsOf(p);
     for (size_t i = 0; i < domains.size(); ++i) {
-        if (a.tables.domains[domains[i]].tier == tier && !fits(domains[i], firsts[i])) return false;
+        if (a.tables.domains[domains[i]].tier > 0) break; // they never fall
+        const VertexRange range = a.ranges[domains[i]];
+        const bool fits = isWide(a, p) ? rootsFit<uint32_t>(a, firsts[i], range, place)
+                                       : rootsFit<uint16_t>(a, firsts[i], range, place);
+        if (!fits) return false;
     }
-    const size_t interior = size_t(a.tables.record->domainCount) + p;
-    return tier + 1 < a.tables.tierCount() ||
-           fits(uint32_t(interior), a.tables.patches[p].slotCount - a.tables.vertexRanges[interior].count);
+    return true;
+}
+
+/// All that the patch reads in tier 0 is there.
+bool isFirstThere(const StreamedAsset& a, uint32_t p) {
+    const std::span<const uint32_t> needs = a.needsOf(p, 0);
+    return std::all_of(needs.begin(), needs.end(), [&](uint32_t page) { return a.isThere(page); });
 }
 
 void enter(StreamedAsset& a, uint32_t page, const Streams& streams, uint32_t firstRow, std::span<uint8_t> collapse) {
@@ -166,7 +172,7 @@ void enter(StreamedAsset& a, uint32_t page, const Streams& streams, uint32_t fir
 }
 
 void leave(StreamedAsset& a, uint32_t page) {
-    for (const uint32_t r : a.pageRanges.of(page)) a.ranges[r] = {};
+    for (const uint32_t r : a.pageRanges.of(page)) a.ranges[r].first = a.deadRow;
     for (const uint32_t p : a.pagePatches.of(page)) {
         a.places[size_t(p) * a.tables.tierCount() + a.tables.pages[page].tier] = {};
     }
@@ -183,7 +189,7 @@ Status installPage(StreamedAsset& a, uint32_t page, std::span<const std::byte> b
     a.pages[page].state = PageState::installed;
     const uint32_t tier = a.tables.pages[page].tier;
     for (const uint32_t p : a.dependents.of(page)) {
-        if (!a.isReadable(p, tier) || rootsFit(a, p, tier)) continue;
+        if (tier > 0 || !isFirstThere(a, p) || rootsFit(a, p)) continue;
         leave(a, page);
         return corrupt("page with a wrong parent: bake the file again", page);
     }

@@ -1,7 +1,7 @@
 // Streams an asset that is larger than the memory it is given, with no graphics API: flies a camera around in it, and
 // writes what was drawn as a table (FILE.csv) and as a picture (FILE.svg).
 //
-//     xgc bake terrain.glb -o terrain.xgc --tiers 4
+//     xgc bake terrain.glb -o terrain.xgc --tiers 6
 //     xgc_streaming terrain.xgc [OUTPUT without ending] [budget, of the scene's bytes: 0.1]
 
 #include "chart.h"
@@ -133,7 +133,7 @@ int run(std::FILE* file, const std::string& output, double share) {
     xgc::AssetView asset;
     if (!tables.read(file)) return std::fprintf(stderr, "xgc_streaming: the file has no tables\n"), 1;
     if (!succeeded(xgc::openTables(tables.span(), asset))) return 1;
-    if (asset.tierCount() < 2) return std::fprintf(stderr, "xgc_streaming: bake the file with --tiers 4\n"), 1;
+    if (asset.tierCount() < 2) return std::fprintf(stderr, "xgc_streaming: bake the file with --tiers 6\n"), 1;
     uint64_t sceneBytes = 0;
     for (const xgc::format::PageRecord& page : asset.pages) sceneBytes += page.rawBytes;
     const auto budget = uint64_t(share * double(sceneBytes));

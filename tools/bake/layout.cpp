@@ -16,7 +16,7 @@ using namespace layout;
 
 /// A tier has so many times the vertices of the next coarser one: what is drawn from it then has about as much beside
 /// it that is not drawn as the patches that are wanted no finer.
-constexpr uint32_t kTierRatio = 4;
+constexpr uint32_t kTierRatio = 2;
 
 /// Names, one after the other.
 class Strings {

@@ -16,7 +16,8 @@
 // matter of choosing the patches of each page, and copying runs of the image's streams.
 //
 // Patches of a page should be neighbours, since what a view wants finer it wants finer in one place: patches are
-// ordered along a Morton curve and cut into runs of about equal size, tier by tier.
+// ordered along a Morton curve and cut into runs, tier by tier, each as long as a page allows: readers give each page
+// the memory of the largest.
 
 namespace xgc::bake {
 namespace {
@@ -121,21 +122,16 @@ private:
         std::vector<uint32_t> patchPages(size_t(record_.patchCount) * tierCount_);
         for (uint32_t tier = 0; tier < tierCount_; ++tier) {
             const std::vector<uint64_t> cost = costs(tier);
-            const uint64_t total = std::accumulate(cost.begin(), cost.end(), uint64_t(0));
-            const uint64_t count =
-                std::clamp<uint64_t>((total + options_.pageBytes - 1) / options_.pageBytes, 1, record_.patchCount);
-            uint64_t done = 0, last = UINT64_MAX;
+            uint64_t used = 0;
             uint32_t groups = 0;
             for (const uint32_t p : order) {
-                // The run in which the middle of the patch lies.
-                const uint64_t run = total == 0 ? 0 : (2 * done + cost[p]) * count / (2 * total);
-                if (run != last) {
+                if (groups == 0 || used + cost[p] > options_.pageBytes) {
                     pages_.push_back({});
                     pages_.back().tier = tier;
                     pages_.back().group = groups++;
+                    used = 0;
                 }
-                last = run;
-                done += cost[p];
+                used += cost[p];
                 patchPages[size_t(p) * tierCount_ + tier] = uint32_t(pages_.size()) - 1;
             }
             record_.pageGroupCount = std::max(record_.pageGroupCount, groups);

@@ -231,9 +231,10 @@ void addBake(CLI::App& app, Run& run) {
         ->capture_default_str();
     bake->add_option(
             "--tiers", arguments->options.pages.tiers,
-            "cut the file into pages for streaming, in so many tiers of levels (1: one page; 4 is a good start)")
+            "cut the file into pages for streaming, in so many tiers of levels (1: one page; 6 is a good start)")
         ->check(CLI::Range(1u, format::kMaxTiers));
-    bake->add_option("--page-kb", arguments->pageKilobytes, "with --tiers: about so large a page, uncompressed")
+    bake->add_option("--page-kb", arguments->pageKilobytes,
+                     "with --tiers: most bytes of a page, uncompressed (a patch is never cut)")
         ->check(CLI::Range(1u, 1u << 20));
     bake->add_flag("--compress", arguments->options.compress,
                    "Compress the file: a third of the size, decoded by xgc::load; without it, it can be mapped");

@@ -10,11 +10,13 @@ namespace xgc::bake {
 
 /// How an asset is cut for streaming (xgc/residency.h).
 struct PageOptions {
-    /// Most tiers of levels, the finest with about a quarter of the vertices of the next; 1: no pages, one file to be
-    /// opened as a whole. At most format::kMaxTiers.
+    /// Most tiers of levels, each with about half of the vertices of the next finer one; 1: no pages, one file to be
+    /// opened as a whole. The coarsest is always in memory: a share of 2^-(tiers - 1), where levels reach so far. At
+    /// most format::kMaxTiers.
     uint32_t tiers = 1;
-    uint32_t pageBytes = 64 * 1024; ///< about so large, uncompressed; a patch is never cut
-    bool compress = false;          ///< streams of pages as zstd frames, where that makes them smaller
+    /// As many neighbouring patches a page as fit, uncompressed; one patch at least, which is never cut.
+    uint32_t pageBytes = 64 * 1024;
+    bool compress = false; ///< streams of pages as zstd frames, where that makes them smaller
     int zstdLevel = 12;
 };
 
