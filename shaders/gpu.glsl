@@ -10,6 +10,7 @@ layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer As
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Patches { GpuPatch at[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Domains { GpuDomain at[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Instances { GpuInstance at[]; };
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer PosedPatches { GpuPosedPatch at[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Controls { GpuControl at[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer Runs { GpuRun at[]; };
 layout(buffer_reference, std430, buffer_reference_align = 16) buffer States { GpuInstanceState at[]; };
@@ -37,6 +38,20 @@ uint halfAt(uvec2 address, uint i) {
 // Number of this work group in a dispatch that may be several rows high.
 uint groupNumber() {
     return gl_WorkGroupID.y * kGroupsPerRow + gl_WorkGroupID.x;
+}
+
+bool isPosed(GpuInstance instance) {
+    return (instance.flags & kInstancePosed) != 0;
+}
+
+// In mesh space, posed where the instance is.
+vec4 boundsOf(GpuInstance instance, GpuAsset asset) {
+    return isPosed(instance) ? instance.posedSphere : asset.sphere;
+}
+
+vec4 patchBounds(GpuInstance instance, GpuAsset asset, uint patchId) {
+    return isPosed(instance) ? PosedPatches(frame.posedPatches).at[instance.firstSlot + patchId].sphere
+                             : Patches(asset.patches).at[patchId].sphere;
 }
 
 bool isState(uint subject) {

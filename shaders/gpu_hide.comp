@@ -56,7 +56,7 @@ void main() {
     if (own.kind == kKindCulled) return;
     if (own.kind == kKindWhole) {
         if (gl_LocalInvocationIndex > 0) return;
-        const bool seen = !isHidden(instance, asset.sphere), draws = seen && (own.flags & kStateSeen) == 0;
+        const bool seen = !isHidden(instance, boundsOf(instance, asset)), draws = seen && (own.flags & kStateSeen) == 0;
         States(frame.states).at[id].flags = (own.flags & ~(kStateSeen | kStateDraw)) | (seen ? kStateSeen : 0) |
                                             (draws ? kStateDraw : 0);
         return;
@@ -64,7 +64,7 @@ void main() {
     for (uint p = gl_LocalInvocationIndex; p < asset.patchCount; p += 64) {
         const uint slot = instance.firstSlot + p, word = WordsOut(frame.slots).at[slot];
         if ((word & kSlotVisible) == 0) continue;
-        const bool seen = !isHidden(instance, Patches(asset.patches).at[p].sphere);
+        const bool seen = !isHidden(instance, patchBounds(instance, asset, p));
         const bool draws = seen && (word & kSlotSeen) == 0;
         WordsOut(frame.slots).at[slot] =
             (word & ~(kSlotSeen | kSlotDraw)) | (seen ? kSlotSeen : 0) | (draws ? kSlotDraw : 0);

@@ -20,6 +20,14 @@ struct Strictness {
     float bandFactor;
 };
 
+// What a pose does to the errors of a patch.
+struct PosedErrors {
+    bool posed; // else the rest is not read
+    uvec2 skin, morph;
+    uint firstWeight, weightCount;
+    GpuPosedPatch by;
+};
+
 // LevelTest of level_choice.h.
 struct Test {
     uvec2 errors;
@@ -28,6 +36,7 @@ struct Test {
     float importance;
     float assetRadius;
     Standing at;
+    PosedErrors pose;
 };
 
 Strictness loose, middle, tight;
@@ -66,6 +75,18 @@ float difference(float a, float b) {
 float reachOf(float scale, float a, float b, float c, float d) {
     precise const float reach = scale * (a * b + c * d);
     return reach;
+}
+
+// sum + a * b
+float plusProduct(float sum, float a, float b) {
+    precise const float more = sum + a * b;
+    return more;
+}
+
+// sum + (a * b + c * d)
+float plusProducts(float sum, float a, float b, float c, float d) {
+    precise const float more = sum + (a * b + c * d);
+    return more;
 }
 
 bool reaches(float reach, float awaySquared) {
@@ -108,11 +129,30 @@ bool beyond(float radii, Standing at) {
 
 // Levels ------------------------------------------------------------------------------------------------------------
 
+// posedError of skin.cpp. `at`: of the patch's level in the tables, whose own error is `own`.
+float posedError(PosedErrors pose, uint at, float own) {
+    for (uint t = 0; t < pose.weightCount; ++t) {
+        own = plusProduct(own, Floats(frame.poseWeights).at[pose.firstWeight + t],
+                          Floats(pose.morph).at[at * pose.weightCount + t]);
+    }
+    float error = times(pose.by.stretch, own);
+    if (pose.by.bend > 0 || pose.by.offset > 0) {
+        const float weight = Floats(pose.skin).at[2 * at], moment = Floats(pose.skin).at[2 * at + 1];
+        error = plusProducts(error, pose.by.offset, weight, pose.by.bend, moment);
+        if (own > 0 || moment > 0) error = plus(error, pose.by.added);
+    }
+    return error;
+}
+
+float errorOf(Test test, uint level) {
+    const uint at = test.firstError + level;
+    const float own = Floats(test.errors).at[at];
+    return test.pose.posed ? posedError(test.pose, at, own) : own;
+}
+
 bool fits(Test test, uint level, Strictness s) {
     if (level == 0) return true;
-    if (frame.byBands == 0) {
-        return errorFits(times(Floats(test.errors).at[test.firstError + level], test.importance), s.pixels, test.at);
-    }
+    if (frame.byBands == 0) return errorFits(times(errorOf(test, level), test.importance), s.pixels, test.at);
     return bandReached(times(times(frame.bands[level - 1], test.importance), s.bandFactor), test.assetRadius, test.at);
 }
 
@@ -224,7 +264,8 @@ void main() {
     // decideWhole
     const bool was = (own.flags & kStateWhole) != 0, unsteered = instance.firstControl == kNone;
     bool whole = false, inBelt = false;
-    if (frame.byBands == 0 && unsteered && frame.orthographic == 0) {
+    const bool posed = isPosed(instance);
+    if (frame.byBands == 0 && unsteered && frame.orthographic == 0 && !posed) {
         const Standing at = standingOf(instance, asset.sphere);
         whole = beyond(was ? frame.wholeInner : frame.wholeOuter, at);
         inBelt = !whole && beyond(frame.beltInner, at);
@@ -234,18 +275,21 @@ void main() {
     const bool forget = !whole && (was || fresh) && leftState == kNoLevel;
 
     // cull
+    const vec4 bounds = boundsOf(instance, asset);
     vec4 inWorld;
-    for (int i = 0; i < 3; ++i) inWorld[i] = along(instance.toWorld[i], asset.sphere.xyz, instance.toWorld[i].w);
-    inWorld.w = times(asset.sphere.w, instance.maxScale);
+    for (int i = 0; i < 3; ++i) inWorld[i] = along(instance.toWorld[i], bounds.xyz, instance.toWorld[i].w);
+    inWorld.w = times(bounds.w, instance.maxScale);
     const uint side = sideOfAll(frame.planes, inWorld);
     own.kind = whole ? kKindWhole : kKindMixed;
-    const bool small = tooSmall(standingOf(instance, asset.sphere));
+    const bool small = tooSmall(standingOf(instance, bounds));
     if ((instance.flags & kInstanceVisible) == 0 || side == kOutside || small) own.kind = kKindCulled;
 
     // choose
+    PosedErrors pose;
+    pose.posed = false;
     if (whole) {
         const Test test = Test(asset.wholeErrors, 0, levelsToTry(asset.stateCount), 1.0, asset.sphere.w,
-                               standingFor(instance, asset.sphere));
+                               standingFor(instance, asset.sphere), pose);
         own.wholeState = nextLevel(test, own.wholeState, true);
     }
     const bool wholeDrawn = own.kind == kKindWhole && drawnInPhase((own.flags & kStateSeen) != 0);
@@ -257,7 +301,7 @@ void main() {
     if (!mixed && !forget && leftState == kNoLevel) return;
     vec4 planes[6];
     for (uint i = 0; i < frame.planeCount; ++i) planes[i] = toMeshSpace(frame.planes[i], instance);
-    const bool cones = frame.cullBackfaces != 0 && (instance.flags & kInstanceInvertible) != 0;
+    const bool cones = frame.cullBackfaces != 0 && (instance.flags & kInstanceInvertible) != 0 && !posed;
     const vec3 eye = meshEye(instance);
     for (uint p = gl_LocalInvocationIndex; p < asset.patchCount; p += 64) {
         const uint slot = instance.firstSlot + p;
@@ -270,15 +314,20 @@ void main() {
             continue;
         }
         const GpuPatch surface = Patches(asset.patches).at[p];
+        const vec4 sphere = patchBounds(instance, asset, p);
         GpuControl control = GpuControl(1.0, 0, 0, kNoLevel, 0, 0, 0, 0);
         if (!unsteered) control = Controls(frame.controls).at[instance.firstControl + surface.part];
-        bool visible = control.hidden == 0 && !tooSmall(standingOf(instance, surface.sphere));
-        if (side == kAcross && sideOfAll(planes, surface.sphere) == kOutside) visible = false;
+        bool visible = control.hidden == 0 && !tooSmall(standingOf(instance, sphere));
+        if (side == kAcross && sideOfAll(planes, sphere) == kOutside) visible = false;
         uint level = asset.levelCount - 1;
         if (visible) {
+            if (posed) {
+                pose = PosedErrors(true, asset.skinErrors, asset.morphErrors, instance.firstWeight,
+                                   instance.weightCount, PosedPatches(frame.posedPatches).at[slot]);
+            }
             const Test test = Test(asset.errors, p * asset.levelCount, levelsToTry(asset.levelCount),
                                    times(surface.importance, control.importance), asset.sphere.w,
-                                   standingFor(instance, surface.sphere));
+                                   standingFor(instance, sphere), pose);
             wanted = nextLevel(test, wanted, !inBelt);
             level = unsteered ? wanted : steered(control, wanted, asset.levelCount);
             if (cones && level <= surface.coneLevel && turnedAway(surface, eye)) {

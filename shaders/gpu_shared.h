@@ -64,6 +64,8 @@ struct GpuAsset {
     Address wholeLevels;    ///< bytes, state * patchCount + patch
     Address wholeFinest;    ///< uint, a state each: its finest level
     Address order;          ///< uint: patches by material
+    Address skinErrors;     ///< xgc::SkinError, patch * levelCount + level
+    Address morphErrors;    ///< float, (patch * levelCount + level) * targets + target
     uint patchCount;
     uint levelCount;
     uint listCount;
@@ -73,18 +75,30 @@ struct GpuAsset {
 XGC_CONST uint kInstancePresent = 1;
 XGC_CONST uint kInstanceVisible = 2;
 XGC_CONST uint kInstanceInvertible = 4; ///< toMesh holds
+XGC_CONST uint kInstancePosed = 8;      ///< GpuFrame::posedPatches has its patches, by slot
 
 /// An instance, as the host says each frame.
 struct GpuInstance {
-    vec4 toWorld[3]; ///< rows
-    vec4 toMesh[3];  ///< rows of the inverse of its linear part
+    vec4 toWorld[3];  ///< rows
+    vec4 toMesh[3];   ///< rows of the inverse of its linear part
+    vec4 posedSphere; ///< mesh space, of its pose
     float maxScale;
     uint generation;
     uint asset;
     uint firstSlot;
     uint firstControl; ///< kNone: nobody steers it
     uint flags;
-    uint reserved0, reserved1;
+    uint firstWeight; ///< of its pose, in GpuFrame::poseWeights
+    uint weightCount; ///< likewise: targets, or none
+};
+
+/// xgc::PosedPatch
+struct GpuPosedPatch {
+    vec4 sphere;
+    float stretch;
+    float offset;
+    float bend;
+    float added;
 };
 
 /// xgc::PartControl, its levels within 0 to 255 and its bias within +-255.
@@ -161,10 +175,12 @@ struct GpuTotals {
 /// A frame of a view: everything is found from here.
 struct GpuFrame {
     // The host's.
-    Address assets;    ///< GpuAsset, by id of the scene
-    Address instances; ///< GpuInstance, by id
-    Address controls;  ///< GpuControl
-    Address runs;      ///< GpuRun
+    Address assets;       ///< GpuAsset, by id of the scene
+    Address instances;    ///< GpuInstance, by id
+    Address controls;     ///< GpuControl
+    Address runs;         ///< GpuRun
+    Address posedPatches; ///< GpuPosedPatch, by slot
+    Address poseWeights;  ///< float: magnitudes of the weights of targets
     // The view's.
     Address states; ///< GpuInstanceState, by id
     Address slots;  ///< uint
@@ -223,8 +239,9 @@ struct GpuPush {
 
 #ifdef __cplusplus
 static_assert(sizeof(GpuPatch) == 96);
-static_assert(sizeof(GpuAsset) == 160);
-static_assert(sizeof(GpuInstance) == 128);
+static_assert(sizeof(GpuAsset) == 176);
+static_assert(sizeof(GpuInstance) == 144);
+static_assert(sizeof(GpuPosedPatch) == 32);
 static_assert(sizeof(GpuControl) == 32);
 static_assert(sizeof(GpuFrame) % 16 == 0 && offsetof(GpuFrame, worldToClip) % 16 == 0);
 } // namespace xgc::shader

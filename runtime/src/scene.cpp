@@ -303,6 +303,17 @@ std::span<const PosedPatch> Scene::posedPatches(uint32_t id) const {
     return {impl_->posed.data() + instance.firstSlot, impl_->assetAt(instance.asset).desc.asset->patchCount()};
 }
 
+glm::vec4 Scene::posedSphere(uint32_t id) const {
+    assert(impl_->at(id).posed);
+    return impl_->at(id).posedSphere;
+}
+
+std::span<const float> Scene::posedWeights(uint32_t id) const {
+    const SceneInstance& instance = impl_->at(id);
+    assert(instance.posed);
+    return {impl_->morphWeights.data() + instance.firstWeight, instance.weightCount};
+}
+
 // Parts -------------------------------------------------------------------------------------------------------------
 
 Status Scene::setPart(uint32_t id, uint32_t part, const PartControl& control) {

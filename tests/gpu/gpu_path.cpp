@@ -1,6 +1,7 @@
 #include "gpu_test.h"
 
 #include "meshes/patched_torus.h"
+#include "meshes/posed_model.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -15,7 +16,14 @@ namespace {
 using namespace xgc;
 using namespace xgc::test;
 
-/// Toruses near, and far ones behind a wall of two large flat ones.
+/// Baked once.
+const PosedModel& bakedTube() {
+    static const PosedModel tube(tubeModel({24, 60}), 128);
+    return tube;
+}
+
+/// Toruses near, and far ones behind a wall of two large flat ones. Tubes bend, and come from behind it and go there,
+/// by their poses.
 class Field {
 public:
     explicit Field(Stage& stage) : stage_(stage) {
@@ -33,6 +41,13 @@ public:
             m = glm::scale(m, glm::vec3(8, 8, 0.5f));
             XGC_REQUIRE_OK(stage.renderer.addInstance(handle, makePlacement(m), instances.emplace_back()));
         }
+        REQUIRE(tube_.failure == "");
+        tubes_.push_back(stage.place(tube_.view, standing(0), view));
+        XGC_REQUIRE_OK(stage.renderer.addAsset(tube_.view, handle));
+        while (!stage.renderer.resident(handle)) frame(0);
+        for (int i = 1; i < 6; ++i) {
+            XGC_REQUIRE_OK(stage.renderer.addInstance(handle, standing(i), tubes_.emplace_back()));
+        }
     }
 
     vulkan::ViewDesc view;
@@ -46,6 +61,7 @@ public:
         desc.view = makeView(view.camera.eye, view.camera.fovY, 160);
         desc.frustum = makeFrustum(view.camera.worldToClip());
         XGC_REQUIRE_OK(stage_.renderer.beginFrame());
+        for (size_t i = 0; i < tubes_.size(); ++i) pose(i, t);
         stage_.renderer.select(0, desc);
         stage_.renderer.endFrame();
         return occludes ? drawInTwo() : stage_.read(stage_.submit(view));
@@ -59,6 +75,21 @@ private:
         const float away = i < 12 ? 4.0f : 60.0f;
         glm::mat4 m = glm::translate(glm::mat4(1), away * glm::vec3(next() - 0.5f, next() - 0.5f, -next()));
         return makePlacement(glm::rotate(m, 6 * next(), glm::normalize(glm::vec3(next(), next(), 1))));
+    }
+    static Placement standing(int i) {
+        return makePlacement(glm::translate(glm::mat4(1), glm::vec3(4 * i - 8, -1, i % 2 ? -4 : -18)));
+    }
+    /// Every third stands unposed at times.
+    void pose(size_t i, float t) {
+        const float at = std::sin(9 * t + 2 * float(i));
+        if (i % 3 == 0 && at < -0.5f) {
+            XGC_REQUIRE_OK(stage_.renderer.clearPose(tubes_[i]));
+            return;
+        }
+        std::mt19937 random(uint32_t(i) + 1);
+        RandomPose pose(tube_.view, random, 0.7f * at);
+        for (glm::mat4x3& m : pose.joints) m[3] += glm::vec3(0, 9 * at, 0);
+        XGC_REQUIRE_OK(stage_.renderer.setPose(tubes_[i], pose.pose()));
     }
     Picture drawInTwo() {
         vulkan::Renderer& renderer = stage_.renderer;
@@ -80,6 +111,8 @@ private:
 
     Stage& stage_;
     OpenAsset torus_ = openBuilt(patchedTorus({.patches = 4, .levels = 4}));
+    const PosedModel& tube_ = bakedTube();
+    std::vector<vulkan::InstanceHandle> tubes_;
 };
 
 vulkan::OffscreenDesc target() {
@@ -88,8 +121,14 @@ vulkan::OffscreenDesc target() {
     return desc;
 }
 
-vulkan::RendererConfig onDevice() {
+vulkan::RendererConfig onHost() {
     vulkan::RendererConfig config;
+    config.jointCapacity = config.morphWeightCapacity = 64;
+    return config;
+}
+
+vulkan::RendererConfig onDevice() {
+    vulkan::RendererConfig config = onHost();
     config.gpu.views = 1;
     config.gpu.tableBytes = config.gpu.indexBytes = 4 << 20;
     return config;
@@ -106,7 +145,7 @@ size_t different(const Picture& a, const Picture& b) {
 TEST_CASE("the device's draws give the host's pictures, in every mode") {
     const Gpu gpu;
     if (!gpu.present) return;
-    Stage hostStage(gpu, {}, target()), stage(gpu, onDevice(), target());
+    Stage hostStage(gpu, onHost(), target()), stage(gpu, onDevice(), target());
     Field host(hostStage), device(stage);
     for (int i = 0; i < 5; ++i) {
         for (Field* field : {&host, &device}) {
@@ -162,7 +201,7 @@ TEST_CASE("what the compute path cannot do is done on the host, by name") {
     vulkan::Context context;
     XGC_REQUIRE_OK(context.create(bare));
 
-    Stage hostStage(gpu, {}, target()), stage(gpu, onDevice(), target());
+    Stage hostStage(gpu, onHost(), target()), stage(gpu, onDevice(), target());
     Field host(hostStage), field(stage);
     const auto both = [&](const char* reason) {
         const Picture expected = host.frame(0.4f);

@@ -2,6 +2,7 @@
 
 #include "meshes/baked_model.h"
 #include "meshes/patched_torus.h"
+#include "meshes/posed_model.h"
 #include "random_placement.h"
 
 #include "barriers.h"
@@ -148,9 +149,10 @@ public:
         config.assetPatchCapacity = 4096;
         config.patchCapacity = 16384;
         config.steeredPartCapacity = 2048;
+        config.morphWeightCapacity = 256;
         config.gpu = {.views = 1, .tableBytes = 8 << 20, .indexBytes = 8 << 20, .drawCapacity = 16384};
-        sceneConfig_ = {config.assetCapacity, config.instanceCapacity, config.assetPatchCapacity, config.patchCapacity,
-                        config.steeredPartCapacity};
+        sceneConfig_ = {config.assetCapacity, config.instanceCapacity,    config.assetPatchCapacity,
+                        config.patchCapacity, config.steeredPartCapacity, config.morphWeightCapacity};
         REQUIRE(scene.create(sceneConfig_).ok());
         REQUIRE(selection.create(sceneConfig_).ok());
         XGC_REQUIRE_OK(pipelines_.create(gpu.context));
@@ -294,12 +296,26 @@ struct Assets {
     OpenAsset small = openBuilt(patchedTorus({.patches = 3, .levels = 2}));
     OpenAsset large = openBuilt(patchedTorus({.patches = 4, .levels = 3, .materials = 3, .repeatedLevels = 1}));
     BakedModel baked{bake::BundledModel::creature, 6000, 150};
+    PosedModel tube{tubeModel({24, 60}), 128};
     Assets() {
         REQUIRE(small.failure == "");
         REQUIRE(large.failure == "");
         REQUIRE(baked.failure == "");
+        REQUIRE(tube.failure == "");
     }
 };
+
+/// Another pose, of what the asset has: joints, targets, both or an empty one; or none.
+void repose(Twins& twins, Random& random, uint32_t id) {
+    if (random.below(4) == 0) return twins.scene.clearPose(id);
+    const AssetView& asset = *twins.scene.asset(twins.scene.assetOf(id)).asset;
+    std::mt19937 engine(random.below(1u << 30));
+    const RandomPose pose(asset, engine, random.between(0, 1), random.between(0.7f, 1.5f));
+    Pose given = pose.pose();
+    if (random.below(4) == 0) given.joints = {};
+    if (random.below(4) == 0) given.morphWeights = {};
+    REQUIRE(twins.scene.setPose(id, given).ok());
+}
 
 void steer(Twins& twins, Random& random, uint32_t id) {
     const auto parts = uint32_t(twins.scene.asset(twins.scene.assetOf(id)).asset->parts.size());
@@ -320,25 +336,33 @@ TEST_CASE("the device chooses, builds and lists what the host does, bit for bit,
     const Assets assets;
     Twins twins(gpu);
     const uint32_t ids[] = {twins.add(assets.small.view, 1), twins.add(assets.large.view, 0),
-                            twins.add(assets.baked.view, 5)};
+                            twins.add(assets.baked.view, 5), twins.add(assets.tube.view, 4)};
     Random random(1);
-    for (int i = 0; i < 200; ++i) twins.place(ids[i % 3], random.placement(i < 50 ? 6.0f : 90.0f));
+    for (int i = 0; i < 200; ++i) {
+        twins.place(ids[i % 4], random.placement(i < 50 ? 6.0f : 90.0f));
+        if (i % 8 == 3) repose(twins, random, uint32_t(i));
+    }
     const std::vector<float> bands = {0.5f, 1, 2, 4, 8, 9, 10, 11, 12};
-    uint64_t wholes = 0, mixed = 0, culled = 0;
+    uint64_t wholes = 0, mixed = 0, culled = 0, posed = 0;
     for (int i = 0; i < 40; ++i) {
-        for (int change = 0; change < 6; ++change) {
+        for (int change = 0; change < 9; ++change) {
             const uint32_t id = random.below(200);
             if (!twins.scene.hasInstance(id)) {
-                twins.place(ids[random.below(3)], random.placement(20));
+                twins.place(ids[random.below(4)], random.placement(20));
             } else if (change == 0) {
                 twins.remove(id);
             } else if (change == 1) {
                 twins.scene.setVisible(id, random.below(4) != 0);
             } else if (change == 2) {
                 random.below(3) ? steer(twins, random, id) : twins.scene.clearParts(id);
+            } else if (change < 6) {
+                repose(twins, random, id);
             } else {
                 twins.move(id, random.placement(30));
             }
+        }
+        for (uint32_t id = 0; id < twins.scene.instanceEnd(); ++id) {
+            posed += twins.scene.hasInstance(id) && !twins.scene.posedPatches(id).empty();
         }
         CAPTURE(i);
         twins.frame(randomDesc(random, i, bands));
@@ -352,6 +376,7 @@ TEST_CASE("the device chooses, builds and lists what the host does, bit for bit,
     CHECK(wholes > 500);
     CHECK(mixed > 10000);
     CHECK(culled > 2000);
+    CHECK(posed > 500);
 }
 
 TEST_CASE("the device draws the triangles that the cached draw list draws") {

@@ -89,6 +89,9 @@ public:
     void clearPose(uint32_t instance);
     /// What the pose does to each patch; empty where it has none.
     std::span<const PosedPatch> posedPatches(uint32_t instance) const;
+    /// Around them all, in mesh space, and the weights of targets; of an instance with a pose.
+    glm::vec4 posedSphere(uint32_t instance) const;
+    std::span<const float> posedWeights(uint32_t instance) const;
 
     /// Steers a part of one instance. Fails only where steeredPartCapacity is taken.
     Status setPart(uint32_t instance, uint32_t part, const PartControl& control);

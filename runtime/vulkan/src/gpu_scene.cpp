@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <numeric>
 
@@ -115,6 +117,8 @@ shader::GpuAsset layOut(const AssetView& asset, const MadeTables& made, Tables& 
     out.wholeLevels = tables.put(std::span(std::as_const(made.wholeLevels)));
     out.wholeFinest = tables.put(std::span(std::as_const(made.wholeFinest)));
     out.order = tables.put(std::span(std::as_const(made.order)));
+    out.skinErrors = tables.put(asset.skinErrors);
+    out.morphErrors = tables.put(asset.morphErrors);
     out.patchCount = asset.patchCount();
     out.levelCount = asset.levelCount();
     out.listCount = asset.record->listCount;
@@ -140,6 +144,8 @@ shader::GpuControl controlRecord(const PartControl& control) {
 } // namespace
 
 static_assert(sizeof(format::FaceList) == 2 * sizeof(uint32_t));
+static_assert(sizeof(PosedPatch) == sizeof(shader::GpuPosedPatch) &&
+              offsetof(PosedPatch, added) == offsetof(shader::GpuPosedPatch, added));
 static_assert(shader::kNone == format::kNone && shader::kNoLevel == format::kNever);
 
 Status GpuScene::create(const Context& context, const RendererConfig& config) {
@@ -155,7 +161,9 @@ Status GpuScene::create(const Context& context, const RendererConfig& config) {
     instancesAt_ = aligned(config.assetCapacity * sizeof(shader::GpuAsset));
     controlsAt_ = instancesAt_ + aligned(config.instanceCapacity * sizeof(shader::GpuInstance));
     runsAt_ = controlsAt_ + aligned(config.steeredPartCapacity * sizeof(shader::GpuControl));
-    bytesPerFrame_ = runsAt_ + aligned(runCapacity_ * sizeof(shader::GpuRun));
+    posedAt_ = runsAt_ + aligned(runCapacity_ * sizeof(shader::GpuRun));
+    weightsAt_ = posedAt_ + aligned(config.patchCapacity * sizeof(shader::GpuPosedPatch));
+    bytesPerFrame_ = weightsAt_ + aligned(config.morphWeightCapacity * sizeof(float));
     status = frames_.create(context, bytesPerFrame_ * framesInFlight_, kUsage, Residence::upload);
     assets_.resize(assetCapacity_);
     instances_.resize(config.instanceCapacity);
@@ -282,6 +290,23 @@ void GpuScene::listRuns(const Scene& scene) {
 
 // A frame -----------------------------------------------------------------------------------------------------------
 
+/// What the scene says of the instance's pose, into the frame's part.
+void GpuScene::writePose(const Scene& scene, uint32_t id, std::byte* to, uint32_t& weightCount) {
+    shader::GpuInstance& instance = instances_[id];
+    const std::span<const PosedPatch> patches = scene.posedPatches(id);
+    instance.flags &= ~shader::kInstancePosed;
+    if (patches.empty()) return;
+    instance.flags |= shader::kInstancePosed;
+    instance.posedSphere = scene.posedSphere(id);
+    std::memcpy(to + posedAt_ + instance.firstSlot * sizeof(shader::GpuPosedPatch), patches.data(),
+                patches.size_bytes());
+    const std::span<const float> weights = scene.posedWeights(id);
+    instance.firstWeight = weightCount;
+    instance.weightCount = uint32_t(weights.size());
+    auto* magnitudes = reinterpret_cast<float*>(to + weightsAt_);
+    for (const float weight : weights) magnitudes[weightCount++] = std::fabs(weight);
+}
+
 void GpuScene::write(const Scene& scene, uint64_t frame) {
     auto done = retired_.begin();
     for (; done != retired_.end() && done->frame + framesInFlight_ <= frame; ++done) tableRanges_.free(done->bytes);
@@ -293,12 +318,13 @@ void GpuScene::write(const Scene& scene, uint64_t frame) {
     auto* assets = reinterpret_cast<shader::GpuAsset*>(to);
     for (uint32_t id = 0; id < assetEnd_; ++id) assets[id] = assets_[id].record;
     auto* controls = reinterpret_cast<shader::GpuControl*>(to + controlsAt_);
-    uint32_t controlCount = 0;
+    uint32_t controlCount = 0, weightCount = 0;
     for (uint32_t id = 0; id < instanceEnd_; ++id) {
         shader::GpuInstance& instance = instances_[id];
         if ((instance.flags & shader::kInstancePresent) == 0) continue;
         instance.flags &= ~shader::kInstanceVisible;
         if (scene.visible(id)) instance.flags |= shader::kInstanceVisible;
+        writePose(scene, id, to, weightCount);
         instance.firstControl = shader::kNone;
         if (!scene.steered(id)) continue;
         instance.firstControl = controlCount;
@@ -318,6 +344,8 @@ void GpuScene::address(shader::GpuFrame& frame) const {
     frame.instances = at + instancesAt_;
     frame.controls = at + controlsAt_;
     frame.runs = at + runsAt_;
+    frame.posedPatches = at + posedAt_;
+    frame.poseWeights = at + weightsAt_;
     frame.instanceEnd = instanceEnd_;
     frame.assetEnd = assetEnd_;
     frame.stateCapacity = stateCapacity();

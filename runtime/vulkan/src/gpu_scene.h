@@ -13,7 +13,7 @@ namespace xgc::vulkan {
 ///
 /// Tables lie in one buffer that the host writes where no frame reads. Of a frame there is a part a frame in flight:
 ///
-///     [ assets | instances | controls | runs ]
+///     [ assets | instances | controls | runs | posed patches | weights of poses ]
 class GpuScene {
 public:
     Status create(const Context& context, const RendererConfig& config);
@@ -53,13 +53,15 @@ private:
 
     void orderPatches(const Scene& scene, uint32_t asset, std::vector<uint32_t>& order);
     void listRuns(const Scene& scene);
+    void writePose(const Scene& scene, uint32_t instance, std::byte* to, uint32_t& weightCount);
     uint32_t runsOf(const Asset& asset, uint32_t subjects) const { return uint32_t(asset.groups.size()) * subjects; }
 
     Buffer tables_;
     RangeList tableRanges_;
     std::vector<Retired> retired_; ///< oldest first
     Buffer frames_;
-    VkDeviceSize instancesAt_ = 0, controlsAt_ = 0, runsAt_ = 0, bytesPerFrame_ = 0, begin_ = 0;
+    VkDeviceSize instancesAt_ = 0, controlsAt_ = 0, runsAt_ = 0, posedAt_ = 0, weightsAt_ = 0;
+    VkDeviceSize bytesPerFrame_ = 0, begin_ = 0;
     uint32_t framesInFlight_ = 1;
     uint32_t assetCapacity_ = 0, runCapacity_ = 0;
 

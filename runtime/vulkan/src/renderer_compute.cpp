@@ -34,12 +34,12 @@ Status Renderer::Impl::addGpuAsset(StoredAsset& asset) {
 const char* Renderer::Impl::hostReason(uint32_t view, const SelectionDesc& desc) const {
     if (view >= config.gpu.views) return "GpuPathConfig::views";
     if (gpuLacks) return gpuLacks;
-    if (poseCount > 0) return "an instance with a pose";
     if (assetsOffGpu > 0) return "an asset that is streamed, or has a patch of more than 1024 domains";
     return GpuView::lacks(desc);
 }
 
 void Renderer::Impl::writeGpu() {
+    anyPosed = poseCount > 0;
     bool written = false;
     for (StoredView& view : views) {
         if (!view.onDevice()) continue;

@@ -72,6 +72,7 @@ struct Renderer::Impl {
     std::vector<JointRows> joints; ///< of all poses
     std::vector<float> weights;    ///< of targets, likewise
     uint32_t poseCount = 0;        ///< instances with a pose
+    bool anyPosed = false;         ///< of the frame that was ended
 
     uint64_t frame = 0;
     VkDeviceSize indexStagingOffset = 0;

@@ -124,7 +124,7 @@ Status Renderer::Impl::recordDraws(VkCommandBuffer cmd, const ViewDesc& desc, bo
     const bool wire = desc.mode == ShadingMode::wire;
     if (views[desc.view].onDevice()) {
         const Pipelines::Pair& shaded = assets.anyMasked() ? pipelines.surfaceMasked() : pipelines.surface();
-        recordGpuDraws(cmd, {desc.view, late, wire ? pipelines.wire()[0] : shaded[0], !wire}, push);
+        recordGpuDraws(cmd, {desc.view, late, (wire ? pipelines.wire() : shaded)[anyPosed], !wire}, push);
     } else if (wire) {
         recordBatches(cmd, desc.view, push, pipelines.wire(), Which::all);
     } else {
@@ -145,7 +145,7 @@ Status Renderer::recordDepth(VkCommandBuffer cmd, const DepthDesc& desc) {
     const Pipelines& pipelines = self.pipelines;
     if (self.views[desc.view].onDevice()) {
         const Pipelines::Pair& pair = self.assets.anyMasked() ? pipelines.depthMasked() : pipelines.depth();
-        self.recordGpuDraws(cmd, {desc.view, false, pair[0], true}, push);
+        self.recordGpuDraws(cmd, {desc.view, false, pair[self.anyPosed], true}, push);
         return {};
     }
     self.recordBatches(cmd, desc.view, push, pipelines.depth(), Impl::Which::opaque);
