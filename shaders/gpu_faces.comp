@@ -141,7 +141,14 @@ void write(GpuItem item, uvec2 list) {
     }
 }
 
-void writeDraw(uint at, uint firstIndex, uint indexCount, uint instanceCount, DrawRecord record) {
+// Opaque draws, then those with an alpha test, which have a place of their own: the host knows where it begins.
+uint placeOf(uint number) {
+    const uint opaqueDraws = Totals(frame.totals).at.opaqueDraws;
+    return number < opaqueDraws ? number : frame.drawCapacity + number - opaqueDraws;
+}
+
+void writeDraw(uint number, uint firstIndex, uint indexCount, uint instanceCount, DrawRecord record) {
+    const uint at = placeOf(number);
     const uint words[5] = uint[](indexCount, instanceCount, firstIndex, 0, record.firstInstance);
     for (uint i = 0; i < 5; ++i) WordsOut(frame.commands).at[5 * at + i] = words[i];
     Draws(frame.draws).at[at] = record;

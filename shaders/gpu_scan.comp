@@ -11,6 +11,7 @@ layout(local_size_x = 256) in;
 shared uvec2 sums[kLanes];
 shared uvec2 carry;
 shared uint firstMissing; // item
+shared uint firstMasked;  // draw
 
 uvec2 valueAt(uint i) {
     if (push.step == 1) {
@@ -30,6 +31,7 @@ void put(uint i, uvec2 first, uvec2 count) {
         if (!fits) Items(frame.items).at[i].indexCount = 0;
         return;
     }
+    if (i == frame.firstMaskedRun) firstMasked = first.y;
     if (i >= frame.runCount) return;
     const bool fits = first.x + count.x <= frame.itemCapacity && first.y + count.y <= frame.drawCapacity;
     if (!fits) atomicMin(firstMissing, i);
@@ -41,7 +43,7 @@ void main() {
     const uint end = push.step == 1 ? Totals(frame.totals).at.itemCount : frame.runCount;
     if (lane == 0) {
         carry = uvec2(0);
-        firstMissing = kNone;
+        firstMissing = firstMasked = kNone;
     }
     barrier();
     for (uint base = 0; base < end; base += kLanes * kEach) {
@@ -77,6 +79,8 @@ void main() {
                                                        Places(frame.places).at[firstMissing].firstDraw);
     Totals(frame.totals).at.itemCount = listed.x;
     Totals(frame.totals).at.drawCount = listed.y;
+    Totals(frame.totals).at.opaqueDraws = min(firstMasked, listed.y);
+    Totals(frame.totals).at.maskedDraws = listed.y - min(firstMasked, listed.y);
     Totals(frame.totals).at.missingItems = firstMissing == kNone ? 0 : 1;
     Totals(frame.totals).at.groups[0] = min(listed.x, kGroupsPerRow);
     Totals(frame.totals).at.groups[1] = (listed.x + kGroupsPerRow - 1) / kGroupsPerRow;

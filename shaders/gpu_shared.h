@@ -112,7 +112,7 @@ struct GpuControl {
 };
 
 /// Patches of one material of what is drawn as one: a whole state of an asset (asset * kWholeStates + state), or an
-/// instance (GpuFrame::stateCapacity + id). In the order of the draws.
+/// instance (GpuFrame::stateCapacity + id). In the order of the draws: opaque materials first.
 struct GpuRun {
     uint subject;
     uint asset;
@@ -169,7 +169,9 @@ struct GpuTotals {
     uint missingItems;   ///< not 0: items or draws did not fit
     uint missingIndices; ///< not 0: indices did not fit
     uint triangles;      ///< of all instances, modulo 2^32
-    uint reserved0, reserved1, reserved2;
+    uint opaqueDraws;    ///< of drawCount: they begin the commands
+    uint maskedDraws;    ///< the rest: theirs begin at GpuFrame::drawCapacity
+    uint reserved0;
 };
 
 /// A frame of a view: everything is found from here.
@@ -192,8 +194,8 @@ struct GpuFrame {
     Address places;      ///< GpuRunPlace
     Address items;       ///< GpuItem
     Address totals;      ///< GpuTotals
-    Address commands;    ///< VkDrawIndexedIndirectCommand
-    Address draws;       ///< DrawRecord
+    Address commands;    ///< VkDrawIndexedIndirectCommand, twice drawCapacity
+    Address draws;       ///< DrawRecord, likewise
     Address indices;     ///< uint
     uint instanceEnd;
     uint assetEnd;
@@ -220,7 +222,8 @@ struct GpuFrame {
     float loosePixels, middlePixels, tightPixels;
     float looseBand, middleBand, tightBand;
     float wholeInner, wholeOuter, beltInner; ///< radii
-    uint reserved0, reserved1, reserved2;
+    uint firstMaskedRun;                     ///< runs from here on are of alpha-tested materials
+    uint reserved0, reserved1;
     // Of the second phase.
     mat4 worldToClip;
     Address depth; ///< float: the pyramid of what the first one drew

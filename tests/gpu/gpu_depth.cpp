@@ -10,6 +10,8 @@
 #include <xgc/morph.h>
 #include <xgc/vulkan/shadow_map.h>
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include <algorithm>
 #include <cstring>
 
@@ -251,6 +253,40 @@ TEST_CASE("what an alpha test drops leaves neither colour nor depth, and what it
         const Picture picture = stage.draw(stage.place(squares.front.view, {}, view), levels, view);
         CHECK(isMagenta(picture.at(32, 32)) != kept);
     }
+}
+
+TEST_CASE("draws of the compute path leave the host's depths, of posed assets and alpha-tested ones") {
+    const Gpu gpu;
+    if (!gpu.present) return;
+    const PosedModel tube(tubeModel({24, 60}), 128);
+    REQUIRE(tube.failure == "");
+    const Squares kept(0.3f), dropped(0.2f);
+    std::mt19937 random(5);
+    const RandomPose pose(tube.view, random, 0.6f);
+    std::array<DepthStage::Depths, 2> depths;
+    for (const bool device : {false, true}) {
+        vulkan::RendererConfig config;
+        config.jointCapacity = config.morphWeightCapacity = 8;
+        config.gpu.views = device;
+        DepthStage stage(gpu, config);
+        const vulkan::InstanceHandle posed = stage.place(tube.view);
+        for (const auto& [squares, x] : {std::pair(&kept, -1.5f), std::pair(&dropped, 1.5f)}) {
+            const glm::mat4 there = glm::translate(glm::mat4(1), glm::vec3(x, 2, -1));
+            XGC_REQUIRE_OK(stage.renderer.setPlacement(stage.place(squares->front.view), makePlacement(there)));
+        }
+        const vulkan::ViewDesc view = viewOf(tube.view);
+        SelectionDesc desc;
+        desc.view = makeView(view.camera.eye, view.camera.fovY, kSize);
+        XGC_REQUIRE_OK(stage.renderer.beginFrame());
+        XGC_REQUIRE_OK(stage.renderer.setPose(posed, pose.pose()));
+        stage.renderer.select(0, desc);
+        stage.renderer.endFrame();
+        CHECK((stage.renderer.hostReason(0) == nullptr) == device);
+        depths[device] = stage.draw(view);
+        CHECK(depths[device].shaded == depths[device].alone);
+    }
+    CHECK(drawn(depths[0].shaded) > kSize * kSize / 30);
+    CHECK(depths[0].shaded == depths[1].shaded);
 }
 
 TEST_CASE("the sun's shadow lies where something is between, and nowhere else") {

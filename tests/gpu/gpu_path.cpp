@@ -16,6 +16,21 @@ namespace {
 using namespace xgc;
 using namespace xgc::test;
 
+/// A torus with patches that an alpha test drops.
+struct Sieve {
+    OpenAsset torus = openBuilt(patchedTorus({.patches = 4, .levels = 4}));
+    AssetView view = torus.view;
+    std::vector<format::MaterialRecord> materials{view.materials.begin(), view.materials.end()};
+    std::vector<float> cutoffs = std::vector<float>(materials.size(), 0.5f);
+
+    Sieve() {
+        materials[1].flags = format::kAlphaMask;
+        materials[1].baseColor[3] = 0.25f;
+        view.materials = materials;
+        view.alphaCutoffs = cutoffs;
+    }
+};
+
 /// Baked once.
 const PosedModel& bakedTube() {
     static const PosedModel tube(tubeModel({24, 60}), 128);
@@ -33,8 +48,11 @@ public:
         stage.place(torus_.view, placed(0), view);
         vulkan::AssetHandle handle;
         XGC_REQUIRE_OK(stage.renderer.addAsset(torus_.view, handle));
+        vulkan::AssetHandle sieve;
+        XGC_REQUIRE_OK(stage.renderer.addAsset(sieve_.view, sieve));
         for (int i = 1; i < 40; ++i) {
-            XGC_REQUIRE_OK(stage.renderer.addInstance(handle, placed(i), instances.emplace_back()));
+            XGC_REQUIRE_OK(
+                stage.renderer.addInstance(i % 4 == 2 ? sieve : handle, placed(i), instances.emplace_back()));
         }
         for (const float x : {0.0f, 16.0f}) {
             glm::mat4 m = glm::translate(glm::mat4(1), glm::vec3(x, 0, -12));
@@ -112,6 +130,7 @@ private:
     Stage& stage_;
     OpenAsset torus_ = openBuilt(patchedTorus({.patches = 4, .levels = 4}));
     const PosedModel& tube_ = bakedTube();
+    Sieve sieve_;
     std::vector<vulkan::InstanceHandle> tubes_;
 };
 

@@ -24,8 +24,9 @@ using namespace xgc::test;
 /// A frame's commands and draws, as bytes that can be compared.
 struct Draws {
     std::vector<uint32_t> ids;
-    std::vector<DrawCommand> commands;
-    std::vector<shader::DrawRecord> records;
+    // Of opaque materials, and of alpha-tested ones.
+    std::array<std::vector<DrawCommand>, 2> commands;
+    std::array<std::vector<shader::DrawRecord>, 2> records;
     std::vector<uint32_t> indices;
 };
 
@@ -35,7 +36,8 @@ void append(const AssetView& asset, uint32_t patch, Levels levels, std::vector<u
     to.insert(to.end(), out.begin(), out.end());
 }
 
-/// What a selection draws, made here: by material, whole states before mixed instances, each by its number.
+/// What a selection draws, made here: opaque materials first, then by material, whole states before mixed instances,
+/// each by its number.
 class HostDraws {
 public:
     HostDraws(const Scene& scene, const Selection& selection, std::span<const std::vector<uint8_t>> partColors)
@@ -51,9 +53,10 @@ public:
         for (const uint32_t state : states) placeState(state);
         firstMixed_ = uint32_t(out.ids.size());
         out.ids.insert(out.ids.end(), mixed_.begin(), mixed_.end());
-        for (uint32_t material = 0; material < 16; ++material) {
-            for (size_t i = 0; i < states.size(); ++i) drawState(states[i], placed_[i], material);
-            for (size_t i = 0; i < mixed_.size(); ++i) drawMixed(mixed_[i], firstMixed_ + uint32_t(i), material);
+        for (uint32_t i = 0; i < 2 * kMaterials; ++i) {
+            const Kind kind{i % kMaterials, i >= kMaterials};
+            for (size_t s = 0; s < states.size(); ++s) drawState(states[s], placed_[s], kind);
+            for (size_t m = 0; m < mixed_.size(); ++m) drawMixed(mixed_[m], firstMixed_ + uint32_t(m), kind);
         }
     }
 
@@ -61,9 +64,19 @@ public:
     uint64_t triangles = 0;
 
 private:
+    static constexpr uint32_t kMaterials = 16;
+    struct Kind {
+        uint32_t material;
+        bool masked;
+    };
     struct Placed {
         uint32_t first, count;
     };
+    static bool isOf(const AssetDesc& desc, uint32_t patch, const Kind& kind) {
+        const uint32_t own = desc.asset->patches[patch].material;
+        const bool masked = (desc.asset->materials[own].flags & format::kAlphaMask) != 0;
+        return desc.firstMaterial + own == kind.material && masked == kind.masked;
+    }
 
     uint32_t stateOf(uint32_t id) const {
         return scene_.assetOf(id) * shader::kWholeStates + selection_.wholeState(id);
@@ -77,15 +90,15 @@ private:
         }
         placed_.push_back(placed);
     }
-    void draw(uint32_t firstIndex, const Placed& placed, shader::DrawRecord record) {
+    void draw(uint32_t firstIndex, const Placed& placed, const Kind& kind, shader::DrawRecord record) {
         const auto count = uint32_t(out.indices.size()) - firstIndex;
         record.firstInstance = placed.first;
         record.indexBytes = 4;
-        out.commands.push_back({count, placed.count, firstIndex, 0, placed.first});
-        out.records.push_back(record);
+        out.commands[kind.masked].push_back({count, placed.count, firstIndex, 0, placed.first});
+        out.records[kind.masked].push_back(record);
         triangles += uint64_t(count / 3) * placed.count;
     }
-    void drawState(uint32_t state, const Placed& placed, uint32_t material) {
+    void drawState(uint32_t state, const Placed& placed, const Kind& kind) {
         const uint32_t id = state / shader::kWholeStates, number = state % shader::kWholeStates;
         const AssetDesc& desc = scene_.asset(id);
         std::vector<uint8_t> levels(desc.asset->patchCount());
@@ -93,34 +106,34 @@ private:
         const auto first = uint32_t(out.indices.size());
         bool any = false;
         for (uint32_t p = 0; p < levels.size(); ++p) {
-            if (desc.firstMaterial + desc.asset->patches[p].material != material) continue;
+            if (!isOf(desc, p, kind)) continue;
             append(*desc.asset, p, levels, out.indices);
             any = true;
         }
         if (!any) return;
         shader::DrawRecord record{};
-        record.material = material;
+        record.material = kind.material;
         record.partColor = shader::kPartColorCount;
         record.levelFraction = fraction(*desc.asset, *std::min_element(levels.begin(), levels.end()));
         record.error = scene_.wholeError(id, number);
         record.part = shader::kNothing;
-        draw(first, placed, record);
+        draw(first, placed, kind, record);
     }
-    void drawMixed(uint32_t id, uint32_t place, uint32_t material) {
+    void drawMixed(uint32_t id, uint32_t place, const Kind& kind) {
         const AssetDesc& desc = scene_.asset(scene_.assetOf(id));
         const Levels levels = selection_.levels(id);
         for (uint32_t p = 0; p < levels.size(); ++p) {
             const format::PatchRecord& patch = desc.asset->patches[p];
-            if (desc.firstMaterial + patch.material != material || !selection_.visible(id)[p]) continue;
+            if (!isOf(desc, p, kind) || !selection_.visible(id)[p]) continue;
             const auto first = uint32_t(out.indices.size());
             append(*desc.asset, p, levels, out.indices);
             shader::DrawRecord record{};
-            record.material = material;
+            record.material = kind.material;
             record.partColor = partColors_[scene_.assetOf(id)][patch.part];
             record.levelFraction = fraction(*desc.asset, levels[p]);
             record.error = desc.asset->error(p, levels[p]);
             record.part = patch.part;
-            draw(first, {place, 1}, record);
+            draw(first, {place, 1}, kind, record);
         }
     }
     static float fraction(const AssetView& asset, uint32_t level) {
@@ -158,7 +171,8 @@ public:
         XGC_REQUIRE_OK(pipelines_.create(gpu.context));
         XGC_REQUIRE_OK(gpuScene_.create(gpu.context, config));
         XGC_REQUIRE_OK(view_.create(gpu.context, config, gpuScene_.stateCapacity()));
-        XGC_REQUIRE_OK(back_.create(gpu.context, kMade + config.gpu.indexBytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+        madeBytes_ = view_.lists().draws + 2 * config.gpu.drawCapacity * sizeof(shader::DrawRecord);
+        XGC_REQUIRE_OK(back_.create(gpu.context, madeBytes_ + config.gpu.indexBytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                                     vulkan::Residence::download));
         XGC_REQUIRE_OK(offscreen_.create(gpu.context, gpu.device.queue(), singleSampled(4, 4)));
     }
@@ -195,7 +209,7 @@ public:
         gpuScene_.write(scene, ++frame_);
         view_.write(gpuScene_, frame_);
         view_.record(cmd, pipelines_);
-        const VkBufferCopy made{0, 0, kMade}, indices{0, kMade, config.gpu.indexBytes};
+        const VkBufferCopy made{0, 0, madeBytes_}, indices{0, madeBytes_, config.gpu.indexBytes};
         gpu_.context.vk().vkCmdCopyBuffer(cmd, view_.buffer(), back_.handle(), 1, &made);
         gpu_.context.vk().vkCmdCopyBuffer(cmd, view_.indices().handle(), back_.handle(), 1, &indices);
         vulkan::memoryBarrier(gpu_.context.vk(), cmd, {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT},
@@ -235,12 +249,16 @@ public:
         const auto& totals = *at<shader::GpuTotals>(view_.lists().totals);
         CHECK(totals.missingItems == 0);
         CHECK(totals.missingIndices == 0);
-        REQUIRE(totals.drawCount == expected.commands.size());
+        REQUIRE(totals.drawCount == expected.commands[0].size() + expected.commands[1].size());
         REQUIRE(totals.indexCount == expected.indices.size());
         CHECK(same(expected.ids, view_.lists().ids));
-        CHECK(same(expected.commands, view_.lists().commands));
-        CHECK(same(expected.records, view_.lists().draws));
-        CHECK(same(expected.indices, kMade));
+        CHECK(same(expected.indices, madeBytes_));
+        for (const bool masked : {false, true}) {
+            const vulkan::GpuView::DrawRange range = view_.drawRange(false, masked);
+            REQUIRE(*at<uint32_t>(range.count) == expected.commands[masked].size());
+            CHECK(same(expected.commands[masked], range.command));
+            CHECK(same(expected.records[masked], view_.lists().draws + range.first * sizeof(shader::DrawRecord)));
+        }
     }
     template <typename T>
     const T* at(VkDeviceSize offset) {
@@ -254,14 +272,13 @@ private:
         return std::memcmp(expected.data(), back_.mapped().data() + offset, expected.size() * sizeof(T)) == 0;
     }
 
-    static constexpr VkDeviceSize kMade = 2 << 20; ///< bytes of what is compared but for the indices
-
     const Gpu& gpu_;
     SceneConfig sceneConfig_;
     vulkan::GpuPipelines pipelines_;
     vulkan::GpuScene gpuScene_;
     vulkan::GpuView view_;
     vulkan::Buffer back_;
+    VkDeviceSize madeBytes_ = 0; ///< of what is compared but for the indices, which follow in back_
     vulkan::Offscreen offscreen_;
     uint32_t generation_ = 0;
     uint64_t frame_ = 0;
@@ -297,11 +314,15 @@ struct Assets {
     OpenAsset large = openBuilt(patchedTorus({.patches = 4, .levels = 3, .materials = 3, .repeatedLevels = 1}));
     BakedModel baked{bake::BundledModel::creature, 6000, 150};
     PosedModel tube{tubeModel({24, 60}), 128};
+    std::vector<format::MaterialRecord> materials;
     Assets() {
         REQUIRE(small.failure == "");
         REQUIRE(large.failure == "");
         REQUIRE(baked.failure == "");
         REQUIRE(tube.failure == "");
+        materials.assign(large.view.materials.begin(), large.view.materials.end());
+        materials[1].flags = format::kAlphaMask;
+        large.view.materials = materials;
     }
 };
 
@@ -343,7 +364,7 @@ TEST_CASE("the device chooses, builds and lists what the host does, bit for bit,
         if (i % 8 == 3) repose(twins, random, uint32_t(i));
     }
     const std::vector<float> bands = {0.5f, 1, 2, 4, 8, 9, 10, 11, 12};
-    uint64_t wholes = 0, mixed = 0, culled = 0, posed = 0;
+    uint64_t wholes = 0, mixed = 0, culled = 0, posed = 0, masked = 0;
     for (int i = 0; i < 40; ++i) {
         for (int change = 0; change < 9; ++change) {
             const uint32_t id = random.below(200);
@@ -372,11 +393,13 @@ TEST_CASE("the device chooses, builds and lists what the host does, bit for bit,
         wholes += twins.selection.stats().wholeInstances;
         mixed += twins.selection.stats().consideredPatches;
         culled += twins.selection.stats().culledPatches;
+        masked += host.out.commands[1].size();
     }
     CHECK(wholes > 500);
     CHECK(mixed > 10000);
     CHECK(culled > 2000);
     CHECK(posed > 500);
+    CHECK(masked > 500);
 }
 
 TEST_CASE("the device draws the triangles that the cached draw list draws") {

@@ -146,7 +146,6 @@ void AssetStore::writeMaterials(const StoredAsset& asset) {
         record.flags = m.flags;
         const bool masked = kinds_[asset.materials.first + i].masked;
         record.alphaCutoff = masked ? asset.view.alphaCutoff(i) : 0; // nothing of an opaque one is below
-        anyMasked_ = anyMasked_ || masked;
         *out++ = record;
     }
 }

@@ -67,8 +67,6 @@ public:
         bool posable = false;
     };
     MaterialKind kindOf(uint32_t material) const { return kinds_[material]; }
-    /// True once an alpha-tested material came: its pipelines draw opaque ones rightly too.
-    bool anyMasked() const { return anyMasked_; }
 
 private:
     struct Retired {
@@ -85,7 +83,6 @@ private:
     Buffer materials_; ///< written by the host where no frame reads
     RangeList materialRanges_;
     std::vector<MaterialKind> kinds_; ///< a material each
-    bool anyMasked_ = false;
     Uploader uploads_;
     bool morphs_ = false;
     std::vector<StoredAsset> assets_;

@@ -5,6 +5,7 @@
 #include <xgc/draw_list.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <utility>
 
@@ -108,8 +109,8 @@ GpuView::Lists placeLists(const RendererConfig& config, uint32_t stateCapacity, 
     at.places = places.take(config.gpu.runCapacity * sizeof(shader::GpuRunPlace));
     at.items = places.take(config.gpu.drawCapacity * sizeof(shader::GpuItem));
     at.totals = places.take(sizeof(shader::GpuTotals));
-    at.commands = places.take(config.gpu.drawCapacity * sizeof(DrawCommand));
-    at.draws = places.take(config.gpu.drawCapacity * sizeof(shader::DrawRecord));
+    at.commands = places.take(2 * config.gpu.drawCapacity * sizeof(DrawCommand));
+    at.draws = places.take(2 * config.gpu.drawCapacity * sizeof(shader::DrawRecord));
     return at;
 }
 
@@ -179,6 +180,14 @@ void GpuView::point(shader::GpuFrame& frame, bool late) const {
     frame.commands = at + lists.commands;
     frame.draws = at + lists.draws;
     frame.indices = indices_[late].address();
+}
+
+GpuView::DrawRange GpuView::drawRange(bool late, bool masked) const {
+    const Lists& lists = lists_[late];
+    const uint32_t first = masked ? drawCapacity_ : 0;
+    return {first, lists.commands + first * sizeof(DrawCommand),
+            lists.totals +
+                (masked ? offsetof(shader::GpuTotals, maskedDraws) : offsetof(shader::GpuTotals, opaqueDraws))};
 }
 
 // A frame -----------------------------------------------------------------------------------------------------------

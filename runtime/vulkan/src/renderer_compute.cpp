@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstddef>
 #include <utility>
 
 namespace xgc::vulkan {
@@ -56,13 +55,17 @@ void Renderer::Impl::recordGpuDraws(VkCommandBuffer cmd, const GpuDraws& what, s
     push.indices = gpu.indices(what.late).address();
     push.instanceIds = gpu.address() + lists.ids;
     push.lambdaOffsets = push.lambdas = 0;
-    vk.vkCmdPushConstants(cmd, pipelines.layout(), VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                          sizeof(push), &push);
-    vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, what.pipeline);
     if (what.indexed) vk.vkCmdBindIndexBuffer(cmd, gpu.indices(what.late).handle(), 0, VK_INDEX_TYPE_UINT32);
     const auto draw = what.indexed ? vk.vkCmdDrawIndexedIndirectCount : vk.vkCmdDrawIndirectCount; // as recordBatches
-    draw(cmd, gpu.buffer(), lists.commands, gpu.buffer(), lists.totals + offsetof(shader::GpuTotals, drawCount),
-         gpu.drawCapacity(), sizeof(DrawCommand));
+    for (const bool masked : {false, true}) {
+        if (masked && !gpu.hasMasked()) break;
+        const GpuView::DrawRange range = gpu.drawRange(what.late, masked);
+        push.firstDraw = range.first;
+        vk.vkCmdPushConstants(cmd, pipelines.layout(), VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                              sizeof(push), &push);
+        vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, (masked ? what.masked : what.opaque)[anyPosed]);
+        draw(cmd, gpu.buffer(), range.command, gpu.buffer(), range.count, gpu.drawCapacity(), sizeof(DrawCommand));
+    }
 }
 
 void Renderer::useOcclusion(uint32_t view, bool use) {

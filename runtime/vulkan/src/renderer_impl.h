@@ -100,7 +100,7 @@ struct Renderer::Impl {
     struct GpuDraws {
         uint32_t view;
         bool late;
-        VkPipeline pipeline;
+        const Pipelines::Pair &opaque, &masked;
         bool indexed;
     };
     void recordGpuDraws(VkCommandBuffer cmd, const GpuDraws& what, shader::PushConstants push) const;

@@ -122,9 +122,10 @@ Status Renderer::Impl::recordDraws(VkCommandBuffer cmd, const ViewDesc& desc, bo
     const Status status = beginPass(desc.view, viewRecord(desc), push);
     if (!status.ok()) return status;
     const bool wire = desc.mode == ShadingMode::wire;
-    if (views[desc.view].onDevice()) {
-        const Pipelines::Pair& shaded = assets.anyMasked() ? pipelines.surfaceMasked() : pipelines.surface();
-        recordGpuDraws(cmd, {desc.view, late, (wire ? pipelines.wire() : shaded)[anyPosed], !wire}, push);
+    if (views[desc.view].onDevice() && wire) {
+        recordGpuDraws(cmd, {desc.view, late, pipelines.wire(), pipelines.wire(), false}, push);
+    } else if (views[desc.view].onDevice()) {
+        recordGpuDraws(cmd, {desc.view, late, pipelines.surface(), pipelines.surfaceMasked(), true}, push);
     } else if (wire) {
         recordBatches(cmd, desc.view, push, pipelines.wire(), Which::all);
     } else {
@@ -144,8 +145,7 @@ Status Renderer::recordDepth(VkCommandBuffer cmd, const DepthDesc& desc) {
     self.context->vk().vkCmdSetDepthBias(cmd, desc.constantBias, 0, desc.slopeBias);
     const Pipelines& pipelines = self.pipelines;
     if (self.views[desc.view].onDevice()) {
-        const Pipelines::Pair& pair = self.assets.anyMasked() ? pipelines.depthMasked() : pipelines.depth();
-        self.recordGpuDraws(cmd, {desc.view, false, pair[self.anyPosed], true}, push);
+        self.recordGpuDraws(cmd, {desc.view, false, pipelines.depth(), pipelines.depthMasked(), true}, push);
         return {};
     }
     self.recordBatches(cmd, desc.view, push, pipelines.depth(), Impl::Which::opaque);
