@@ -68,8 +68,10 @@ bake::Status App::rebuildRenderer() {
     hasRenderer_ = false;
     Status status = renderer_.create(presenter_.device().context(), config);
     if (status.ok()) status = models_.addTo(renderer_);
+    if (status.ok()) status = uniformLevels_.create(renderer_.scene().config());
     hasRenderer_ = status.ok();
     drawn_ = uniform_ = {};
+    uniformError_ = {};
     sinceRebuild_ = 0;
     return fromRuntime(status);
 }

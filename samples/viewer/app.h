@@ -5,6 +5,7 @@
 #include "options.h"
 #include "presenter.h"
 #include "script.h"
+#include "uniform_error.h"
 #include "view_request.h"
 
 #include <chrono>
@@ -44,8 +45,10 @@ private:
     void buildInterface(float seconds);
     bake::Status drawFrame(bool capture);
     void chooseLevels();
+    void chooseUniformLevels();
     bake::Status recordScene(VkCommandBuffer cmd);
     void measure();
+    void measureSplit();
     bool settled() const;
     bool fixedClock() const { return options_.frames > 0; }
 
@@ -62,10 +65,11 @@ private:
     vulkan::Renderer renderer_;
     bool hasRenderer_ = false;
     DrawnModels drawn_, uniform_; ///< of the latest frame
-    std::vector<float> bands_;
-    uint32_t frames_ = 0;       ///< counted from when all files are there
-    uint32_t sinceRebuild_ = 0; ///< frames
-    uint32_t pictures_ = 0;     ///< that F12 wrote
+    UniformError uniformError_;   ///< of these models, or of none
+    Selection uniformLevels_;     ///< holds its levels for the renderer
+    uint32_t frames_ = 0;         ///< counted from when all files are there
+    uint32_t sinceRebuild_ = 0;   ///< frames
+    uint32_t pictures_ = 0;       ///< that F12 wrote
     std::string title_;
     Clock::time_point lastPick_{};
     Clock::time_point lastFrame_{};

@@ -3,7 +3,6 @@
 #include "app_units.h"
 #include "overlay.h"
 #include "panel.h"
-#include "uniform_level.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,10 +40,17 @@ void App::chooseLevels() {
     const SelectedFor view = selectedFor(state_, area());
     renderer_.select(0, selectionFor(state_, view));
     selectMs_ = fixedClock() ? 0 : milliseconds(Clock::now() - before);
-    if (!state_.split) return;
-    // The other side is one level for all: parts are steered there no more than that they are hidden.
+    if (state_.split) chooseUniformLevels();
+}
+
+/// The other side's: as many triangles as the last frame had. Parts are steered there no more than that they are
+/// hidden.
+void App::chooseUniformLevels() {
+    for (uint32_t i = 0; i < uniformError_.modelCount(); ++i)
+        uniformLevels_.set(renderer_.scene(), models_.all()[i]->instance.index, uniformError_.levels(i));
     models_.applyAll(renderer_, true);
-    renderer_.select(1, uniformSelectionFor(view, state_.measured.uniformLevel, bands_));
+    const bool known = uniformError_.modelCount() > 0;
+    renderer_.select(1, selectionFor(selectedFor(state_, area()), known ? &uniformLevels_ : nullptr));
     models_.applyAll(renderer_, false);
 }
 
@@ -108,7 +114,11 @@ void App::measure() {
     m.changesHistory.add(float(renderer_.drawList(0).stats().changedPatches));
     m.frameHistory.add(frameMs_);
     m.selectHistory.add(selectMs_);
-    if (!state_.split) return;
+    if (state_.split) measureSplit();
+}
+
+void App::measureSplit() {
+    Measured& m = state_.measured;
     uniform_ = models_.drawn(renderer_, 1);
     const SelectedFor view = selectedFor(state_, area());
     View seen = makeView(view.camera.eye, view.camera.fovY, view.height);
@@ -116,7 +126,9 @@ void App::measure() {
     m.worstPixels = worstErrorPixels(drawn_.assets, seen);
     m.uniformWorstPixels = worstErrorPixels(uniform_.assets, seen);
     m.uniformTriangles = renderer_.drawList(1).stats().triangles;
-    m.uniformLevel = uniformLevelWithin(drawn_.assets, m.triangles).level;
+    m.uniformError = uniformError_.error();
+    if (uniformError_.modelCount() != drawn_.assets.size()) uniformError_.create(drawn_.assets);
+    uniformError_.hold(drawn_.assets, m.triangles); // for the next frame
 }
 
 } // namespace xgc::viewer

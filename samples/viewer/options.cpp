@@ -40,7 +40,7 @@ void addOptions(CLI::App& cli, Options& options) {
     CLI::Option* budget = cli.add_option("--budget", options.budget, "At most so many triangles a frame")
                               ->check(CLI::Range(1u, 1u << 30));
     cli.add_flag("--morph", options.morph, "Levels change continuously")->excludes(budget);
-    cli.add_flag("--split", options.split, "Beside it, one level for all at as many triangles");
+    cli.add_flag("--split", options.split, "Beside it, one error for the whole mesh at as many triangles");
     cli.add_flag("!--no-panel", options.panel, "Start with the panel closed");
     cli.add_option("--screenshot", options.screenshot, "Write the last frame to a FILE.png")
         ->check([](const std::string& file) {

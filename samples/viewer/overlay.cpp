@@ -46,11 +46,10 @@ void drawSplit(ImDrawList& list, const ViewerState& state, const Area& area) {
     list.AddTriangleFilled({x + 6, middle}, {x + 2, middle - 4}, {x + 2, middle + 4}, IM_COL32(40, 42, 46, 255));
     const Measured& m = state.measured;
     const auto words = [](const char* what, uint64_t triangles, float pixels) {
-        return fmt::format("{}:  {} triangles, error up to {:.2g} px", what, grouped(triangles), pixels);
+        return fmt::format("{}:  {} triangles, error up to {}", what, grouped(triangles), pixelsText(pixels));
     };
     const std::string left = words("levels by part", m.triangles, m.worstPixels);
-    const std::string right =
-        words(fmt::format("level {} for all", m.uniformLevel).c_str(), m.uniformTriangles, m.uniformWorstPixels);
+    const std::string right = words("one error for all", m.uniformTriangles, m.uniformWorstPixels);
     const float reachLeft = 0.5f * textSize(left).x + 22, reachRight = 0.5f * textSize(right).x + 22;
     label(list, std::max(0.5f * (area.x + x), area.x + reachLeft), area.y + 14, left, kAccent);
     label(list, std::min(0.5f * (x + area.x + area.width), area.x + area.width - reachRight),

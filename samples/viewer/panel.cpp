@@ -80,7 +80,7 @@ void buildColours(ViewerState& state) {
     ImGui::PopStyleVar();
     if (state.mode == vulkan::ShadingMode::levels) legend(levelColor, "finest", "coarsest");
     if (state.mode == vulkan::ShadingMode::error)
-        legend(heatColor, "no error", fmt::format("{:.2g} px; white: more", state.pixels).c_str());
+        legend(heatColor, "no error", fmt::format("{}; white: more", pixelsText(state.pixels)).c_str());
 }
 
 void buildLevels(ViewerState& state, const Models& models) {
@@ -108,11 +108,11 @@ void buildLevels(ViewerState& state, const Models& models) {
     tip("X: keep the levels and the culling of this camera, and look at them from outside.");
     ImGui::SameLine(0, ImGui::GetFontSize());
     ImGui::Checkbox("split", &state.split);
-    tip("V: beside it, one level for all patches at as many triangles. Drag the line.");
+    tip("V: beside it, one error for all patches, near or far, at as many triangles. Drag the line.");
     const Measured& m = state.measured;
     ImGui::PushFont(smallFont());
-    ImGui::TextDisabled("%s", fmt::format("{} triangles in {} draws hold {:.3g} px{}", grouped(m.triangles), m.draws,
-                                          m.pixels, m.overBudget ? " (the least there are)" : "")
+    ImGui::TextDisabled("%s", fmt::format("{} triangles in {} draws hold {}{}", grouped(m.triangles), m.draws,
+                                          pixelsText(m.pixels), m.overBudget ? " (the least there are)" : "")
                                   .c_str());
     ImGui::PopFont();
 }

@@ -53,7 +53,7 @@ std::string reportJson(const ViewerState& state, const Models& models, const Are
     out["triangles"] = state.measured.triangles;
     if (state.split) {
         out["splitAt"] = state.splitAt;
-        out["uniformLevel"] = state.measured.uniformLevel;
+        out["uniformError"] = state.measured.uniformError;
         out["uniformTriangles"] = state.measured.uniformTriangles;
     }
     out["models"] = Json::array();

@@ -30,8 +30,8 @@ struct PartName {
 struct Measured {
     uint64_t triangles = 0;        ///< of the selection
     uint64_t uniformTriangles = 0; ///< of the other side of a split view
-    uint32_t uniformLevel = 0;
-    float pixels = 0; ///< error that the levels hold
+    float uniformError = 0;        ///< that all of it stays within, in radii of the models
+    float pixels = 0;              ///< error that the levels hold
     bool overBudget = false;
     float worstPixels = 0, uniformWorstPixels = 0; ///< of what is visible, in a split view
     uint32_t draws = 0;

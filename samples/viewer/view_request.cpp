@@ -1,6 +1,7 @@
 #include "view_request.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 namespace xgc::viewer {
@@ -32,13 +33,14 @@ SelectionDesc selectionFor(const ViewerState& state, const SelectedFor& view) {
     return desc;
 }
 
-SelectionDesc uniformSelectionFor(const SelectedFor& view, uint32_t level, std::vector<float>& bands) {
-    bands.assign(level, 0.0f); // each is at or below every distance
+SelectionDesc selectionFor(const SelectedFor& view, const Selection* levels) {
+    static constexpr std::array<float, format::kMaxLevels> kCoarsest{}; // each is at or below every distance
     SelectionDesc desc;
     desc.view = makeView(view.camera.eye, view.camera.fovY, view.height);
     desc.frustum = makeFrustum(view.camera.worldToClip());
     desc.policy = Policy::distanceBands;
-    desc.bands = bands;
+    desc.bands = kCoarsest;
+    desc.reference = levels; // which allows nothing coarser
     desc.wholeBeyond = std::numeric_limits<float>::infinity();
     return desc;
 }

@@ -16,8 +16,8 @@ SelectedFor selectedFor(const ViewerState& state, const Area& area);
 /// What the settings ask of the selection.
 SelectionDesc selectionFor(const ViewerState& state, const SelectedFor& view);
 
-/// The same view at one level everywhere. `bands` holds what the result points to.
-SelectionDesc uniformSelectionFor(const SelectedFor& view, uint32_t level, std::vector<float>& bands);
+/// The same view at levels of the host's own: what `levels` was set to, and the coarsest where it was not.
+SelectionDesc selectionFor(const SelectedFor& view, const Selection* levels);
 
 /// How it is coloured.
 vulkan::ViewDesc viewFor(const ViewerState& state, const Area& area, const SelectedFor& view);

@@ -33,6 +33,14 @@ std::string grouped(uint64_t number) {
     return out;
 }
 
+std::string pixelsText(float pixels) {
+    if (pixels == 0) return "0 px";
+    if (pixels < 1) return fmt::format("{:.2f} px", pixels);
+    if (pixels < 10) return fmt::format("{:.1f} px", pixels);
+    constexpr float kMost = 1e6f;
+    return (pixels > kMost ? "over " : "") + grouped(uint64_t(std::min(pixels, kMost) + 0.5f)) + " px";
+}
+
 std::string bytesText(double bytes) {
     if (bytes < 1024) return fmt::format("{:.0f} B", bytes);
     if (bytes < 1024 * 1024) return fmt::format("{:.1f} KiB", bytes / 1024);

@@ -9,6 +9,8 @@ namespace xgc::viewer {
 
 /// 1,234,567
 std::string grouped(uint64_t number);
+/// 0.25 px, 3.4 px, 1,234 px
+std::string pixelsText(float pixels);
 /// 12 bytes, 3.4 KiB, ...
 std::string bytesText(double bytes);
 

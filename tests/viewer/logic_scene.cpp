@@ -1,6 +1,6 @@
 #include "models.h"
 #include "picking.h"
-#include "uniform_level.h"
+#include "uniform_error.h"
 #include "view_request.h"
 
 #include "meshes/baked_model.h"
@@ -65,6 +65,31 @@ uint32_t lcg(uint32_t& state) {
     return state = state * 1664525u + 1013904223u;
 }
 
+/// Triangles of what is visible, built anew, with what is not at its coarsest.
+uint64_t trianglesOf(std::span<const DrawnAsset> drawn, const UniformError& uniform) {
+    uint64_t sum = 0;
+    for (uint32_t m = 0; m < drawn.size(); ++m) {
+        const AssetView& asset = *drawn[m].asset;
+        std::vector<uint8_t> levels(uniform.levels(m).begin(), uniform.levels(m).end());
+        for (uint32_t patch = 0; patch < levels.size(); ++patch)
+            if (!drawn[m].visible[patch]) levels[patch] = uint8_t(asset.levelCount() - 1);
+        std::vector<uint32_t> scratch(scratchCapacity(asset)), indices;
+        for (uint32_t patch = 0; patch < levels.size(); ++patch) {
+            indices.resize(indexCapacity(asset, patch, levels));
+            if (drawn[m].visible[patch]) sum += buildIndices(asset, patch, levels, scratch, indices) / 3;
+        }
+    }
+    return sum;
+}
+
+/// Most triangles that a patch and those beside it lose where it takes its next level.
+uint64_t largestStep(const AssetView& asset) {
+    uint64_t largest = 0;
+    for (uint32_t patch = 0; patch < asset.patchCount(); ++patch)
+        largest = std::max<uint64_t>(largest, uniformTriangles(asset, patch, 0));
+    return largest;
+}
+
 } // namespace
 
 TEST_CASE("a click finds the nearest triangle that is drawn, at any placement") {
@@ -122,25 +147,70 @@ TEST_CASE("rays go through the pixels that points are drawn to") {
     }
 }
 
-TEST_CASE("the uniform level is the finest within the triangles, and the coarsest where none is") {
+TEST_CASE("one error draws as many triangles as are asked for, but for one patch's step, and each patch is within it") {
+    const AssetView& asset = creature().view;
+    Still still(asset, 0), other(asset, 0, glm::scale(glm::mat4(1), glm::vec3(0.5f)));
+    for (uint32_t patch = 0; patch < asset.patchCount(); patch += 3) still.visible[patch] = 0;
+    const DrawnAsset both[] = {still.drawn, other.drawn};
+    UniformError uniform;
+    uniform.create(both);
+    uniform.hold(both, 0);
+    const uint64_t least = uniform.triangles();
+    uniform.hold(both, 1u << 30);
+    const uint64_t most = uniform.triangles();
+    CHECK(uniform.error() == 0);
+    REQUIRE(most > 10 * least);
+
+    uint32_t seed = 3;
+    for (int i = 0; i < 40; ++i) {
+        const uint64_t target = least + uint64_t(lcg(seed)) % (most - least);
+        uniform.hold(both, target);
+        CHECK(uniform.triangles() == trianglesOf(both, uniform));
+        CHECK(uniform.triangles() <= target);
+        CHECK(target - uniform.triangles() <= std::max<uint64_t>(target / 100, largestStep(asset)));
+        for (uint32_t m = 0; m < 2; ++m) {
+            const float error = uniform.error() / (m == 0 ? 1.0f : 0.5f);
+            for (uint32_t patch = 0; patch < asset.patchCount(); ++patch) {
+                const uint32_t level = uniform.levels(m)[patch];
+                CHECK(asset.error(patch, level) <= error * 1.00001f);
+                if (level + 1 < asset.levelCount()) CHECK(asset.error(patch, level + 1) >= error * 0.99999f);
+            }
+        }
+    }
+}
+
+TEST_CASE("the levels of one error go by the triangles alone, not by what was held before, and never cross") {
     const AssetView& asset = creature().view;
     Still still(asset, 0);
     const std::span<const DrawnAsset> drawn(&still.drawn, 1);
-    for (uint32_t level = 0; level < asset.levelCount(); ++level)
-        CHECK(uniformTriangles(drawn, level) == asset.levels[level].faceCount);
-    CHECK(uniformLevelWithin(drawn, asset.record->faceCount).level == 0);
-    for (const uint64_t triangles : {2500u, 900u, 400u}) {
-        const UniformLevel found = uniformLevelWithin(drawn, triangles);
-        CHECK(found.triangles <= triangles);
-        CHECK(uniformTriangles(drawn, found.level - 1) > triangles);
+    UniformError up, down, jumping;
+    for (UniformError* uniform : {&up, &down, &jumping}) uniform->create(drawn);
+    std::vector<uint64_t> targets;
+    for (uint64_t target = 100; target < asset.record->faceCount; target += 173) targets.push_back(target);
+    std::vector<std::vector<uint8_t>> states;
+    float error = std::numeric_limits<float>::infinity();
+    for (const uint64_t target : targets) {
+        up.hold(drawn, target);
+        CHECK(up.error() <= error); // more triangles, less error
+        error = up.error();
+        states.emplace_back(up.levels(0).begin(), up.levels(0).end());
     }
-    CHECK(uniformLevelWithin(drawn, 0).level == asset.levelCount() - 1);
-    // What is not in sight does not count.
-    std::fill(still.visible.begin(), still.visible.end(), uint8_t(0));
-    CHECK(uniformLevelWithin(drawn, 0).level == 0);
+    const auto same = [&](UniformError& uniform, size_t i) {
+        uniform.hold(drawn, targets[i]);
+        return std::equal(states[i].begin(), states[i].end(), uniform.levels(0).begin());
+    };
+    uint32_t seed = 9;
+    for (size_t i = targets.size(); i-- > 0;) {
+        CHECK(same(down, i));
+        CHECK(same(jumping, lcg(seed) % targets.size()));
+        if (i > 0) {
+            const bool finer = std::equal(states[i].begin(), states[i].end(), states[i - 1].begin(), std::less_equal{});
+            CHECK(finer);
+        }
+    }
 }
 
-TEST_CASE("the levels that a view asks for hold its pixels, and the request for one level gives that one") {
+TEST_CASE("the levels that a view asks for hold its pixels, and what the host chose is taken as it is") {
     const AssetView& asset = creature().view;
     ViewerState state;
     state.pixels = 2;
@@ -167,13 +237,15 @@ TEST_CASE("the levels that a view asks for hold its pixels, and the request for 
     CHECK(worst <= 2.001f);
     CHECK(worst > 0.5f);
 
-    std::vector<float> bands;
-    for (const uint32_t level : {0u, 3u}) {
-        selection.update(scene, uniformSelectionFor(view, level, bands));
-        REQUIRE(selection.kind(instance) == InstanceKind::mixed);
-        for (uint32_t patch = 0; patch < asset.patchCount(); ++patch) {
-            if (selection.visible(instance)[patch]) CHECK(selection.levels(instance)[patch] == level);
-        }
+    Selection own;
+    REQUIRE(own.create(config).ok());
+    std::vector<uint8_t> levels(asset.patchCount());
+    for (uint32_t patch = 0; patch < levels.size(); ++patch) levels[patch] = uint8_t(patch % asset.levelCount());
+    own.set(scene, instance, levels);
+    selection.update(scene, selectionFor(view, &own));
+    REQUIRE(selection.kind(instance) == InstanceKind::mixed);
+    for (uint32_t patch = 0; patch < asset.patchCount(); ++patch) {
+        if (selection.visible(instance)[patch]) CHECK(selection.levels(instance)[patch] == levels[patch]);
     }
 }
 

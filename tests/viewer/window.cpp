@@ -184,7 +184,7 @@ TEST_CASE("a mouse and a keyboard pick and pin a part, and the window may change
     CHECK(steered["pinned"] > 0); // 4 pixels are coarser than the input
 }
 
-TEST_CASE("the split view's other side is one level at no more triangles, and the left side stays as it is") {
+TEST_CASE("the split view's other side is one error at as many triangles, and the left side stays as it is") {
     if (!hasDisplay()) return;
     const ViewerRun run =
         runViewer(files().asset + " --size 360x300 --no-panel --mode levels --pixels 3 --split --frames 5",
@@ -192,11 +192,12 @@ TEST_CASE("the split view's other side is one level at no more triangles, and th
     INFO(text(run));
     REQUIRE(run.exitCode == 0);
     CHECK(run.report["uniformTriangles"] <= run.report["triangles"]);
-    CHECK(run.report["uniformLevel"] > 0);
+    CHECK(run.report["uniformTriangles"].get<double>() > 0.9 * run.report["triangles"].get<double>()); // few patches
+    CHECK(run.report["uniformError"] > 0);
     Headless headless;
     const bake::Image expected = headless.draw(run.report, false);
     CHECK(difference(run, expected, {.top = 0.35, .right = 0.48}) < 0.002);
-    CHECK(difference(run, expected, {.left = 0.52, .top = 0.35}) > 0.02);
+    CHECK(difference(run, expected, {.left = 0.52, .top = 0.35}) > 0.005);
 }
 
 TEST_CASE("a model is baked as it comes, and the same frames give the same picture") {
