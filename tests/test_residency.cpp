@@ -1,4 +1,5 @@
 #include "counted_allocations.h"
+#include "meshes/posed_model.h"
 #include "meshes/streamed_torus.h"
 
 #include <doctest/doctest.h>
@@ -284,6 +285,42 @@ TEST_CASE("a page of wrong contents is refused, though its checksum fits, and no
         }
     }
     CHECK(refused > 10);
+}
+
+TEST_CASE("a page whose rows name joints that are not there is refused") {
+    const test::PosedModel tube(test::tubeModel({16, 40}), 128, {.tiers = 3, .pageBytes = 8192});
+    REQUIRE(tube.failure == "");
+    bake::AlignedBytes file = bake::alignedCopy(tube.pages.span());
+    AssetView tables;
+    REQUIRE(openTables(file.span(), tables).ok());
+    for (const bool altered : {false, true}) {
+        for (const format::PageRecord& page : tables.pages) {
+            if (!altered || page.tier != 2) continue;
+            for (const format::StreamRecord& s : tables.streams.subspan(page.firstStream, page.streamCount)) {
+                if (s.kind != format::StreamKind::joints) continue;
+                std::memset(file.writable().data() + page.offset + s.offset, 0x7f, 2);
+            }
+            // Its record lies in the same bytes.
+            const_cast<format::PageRecord&>(page).checksum = hashOf(file.span().subspan(page.offset, page.storedBytes));
+        }
+        FakeReader reader;
+        reader.file = file.span();
+        const PageLimits limits = pageLimits(tables);
+        Residency residency;
+        REQUIRE(residency.create({.pageBytes = limits.bytes, .pageRows = limits.rows, .reader = reader.reader()}).ok());
+        uint32_t asset = 0, refused = 0;
+        REQUIRE(residency.addAsset(tables, asset).ok());
+        for (int frame = 0; frame < 40; ++frame) {
+            residency.want(asset, {}, lookFrom({0, 0, 1}), 1e-3f);
+            residency.update();
+            reader.step(residency);
+            for (const PageError& e : residency.errors())
+                refused += e.givenUp && std::strstr(e.status.message, "joint");
+        }
+        CHECK(residency.ready(asset));
+        CHECK((refused > 0) == altered);
+        CHECK((residency.stats().residentPages == tables.pages.size()) != altered);
+    }
 }
 
 TEST_CASE("answers may come from other threads, twice or to nobody") {

@@ -34,24 +34,24 @@ Status checkPatchJoints(const AssetView& v, uint32_t patch, uint64_t& next) {
     return {};
 }
 
-/// The first set of a stream of whole rows, or null.
-const VertexStream* streamOf(const AssetView& v, StreamKind kind, uint32_t set) {
-    for (uint32_t i = 0; i < v.vertexStreamCount; ++i) {
-        if (v.vertexStreams[i].kind == kind && v.vertexStreams[i].set == set) return &v.vertexStreams[i];
+/// Null where there is none.
+const VertexStream* streamOf(std::span<const VertexStream> streams, StreamKind kind, uint32_t set) {
+    for (const VertexStream& s : streams) {
+        if (s.kind == kind && s.set == set) return &s;
     }
     return nullptr;
 }
 
 /// Each row names joints that are there, by weights of at least 0 of which some are above it.
-Status checkRows(const AssetView& v, std::span<const VertexStream* const> joints,
-                 std::span<const VertexStream* const> weights) {
-    for (uint32_t row = 0; row < v.record->vertexCount; ++row) {
+Status checkRows(size_t jointCount, std::span<const VertexStream* const> joints,
+                 std::span<const VertexStream* const> weights, uint32_t rowCount) {
+    for (uint32_t row = 0; row < rowCount; ++row) {
         float sum = 0;
         for (size_t set = 0; set < joints.size() && joints[set]; ++set) {
             const auto* j = reinterpret_cast<const uint16_t*>(joints[set]->bytes.data()) + 4 * size_t(row);
             const auto* w = reinterpret_cast<const float*>(weights[set]->bytes.data()) + 4 * size_t(row);
             for (int k = 0; k < 4; ++k) {
-                if (j[k] >= v.joints.size()) return corrupt("vertex row that names a joint that is not there", row);
+                if (j[k] >= jointCount) return corrupt("vertex row that names a joint that is not there", row);
                 if (!std::isfinite(w[k]) || !(w[k] >= 0)) return corrupt("vertex row with a wrong weight", row);
                 sum += w[k];
             }
@@ -124,13 +124,13 @@ Status checkMorphTargets(const AssetView& v) {
     return {};
 }
 
-Status checkSkinRows(const AssetView& v) {
+Status checkSkinRows(const AssetView& v, std::span<const VertexStream> streams, uint32_t rowCount) {
     if (v.joints.empty()) return {};
     const VertexStream* joints[2] = {};
     const VertexStream* weights[2] = {};
     for (uint32_t set = 0; set < 2; ++set) {
-        joints[set] = streamOf(v, StreamKind::joints, set);
-        weights[set] = streamOf(v, StreamKind::weights, set);
+        joints[set] = streamOf(streams, StreamKind::joints, set);
+        weights[set] = streamOf(streams, StreamKind::weights, set);
         const bool alike = bool(joints[set]) == bool(weights[set]) && (joints[set] || set > 0);
         if (!alike) return corrupt("the asset has skins, but not joints and weights in pairs", set);
         if (!joints[set]) continue;
@@ -138,7 +138,7 @@ Status checkSkinRows(const AssetView& v) {
             joints[set]->stride != 8 || weights[set]->stride != 16)
             return unsupported("joints are not u16x4 or weights not f32x4: bake the model with this version", set);
     }
-    return checkRows(v, joints, weights);
+    return checkRows(v.joints.size(), joints, weights, rowCount);
 }
 
 } // namespace xgc

@@ -34,10 +34,10 @@ Status checkPageTables(const AssetView& view);
 /// A stream's place, size and format, and that it follows `before`, which ends at `end` (open_page.cpp).
 Status checkStreamRecord(const format::StreamRecord& stream, const format::StreamRecord* before, uint64_t end,
                          uint64_t pageBytes, uint64_t index);
-/// Joints and blend shapes: of the tables, and of rows (check_pose.cpp).
+/// Joints and blend shapes: of the tables, and of rows in `streams` (check_pose.cpp).
 Status checkSkins(const AssetView& view);
 Status checkMorphTargets(const AssetView& view);
-Status checkSkinRows(const AssetView& view);
+Status checkSkinRows(const AssetView& tables, std::span<const VertexStream> streams, uint32_t rowCount);
 
 /// Installs the streams of the one page of version 2 (open_page.cpp).
 Status installPage(AssetView& view);

@@ -262,10 +262,11 @@ void Residency::Impl::arrive(uint32_t index) {
         installPage(a, page, memoryOf(index, bytes), firstRow, {collapse.data() + firstRow, config.pageRows});
     if (!status.ok()) {
         free(index);
-        return fail(asset, page, status, status.code == StatusCode::corrupt);
+        return fail(asset, page, status, status.code != StatusCode::badChecksum);
     }
     slot.word.store(slot.word.load(std::memory_order_relaxed) / 4 * 4, std::memory_order_relaxed);
     a.pages[page].failures = 0;
+    a.pages[page].lastDrawn = frame; // a renderer's copy of it is on its way
     ++stats.installs;
     ++stats.residentPages;
     stats.residentBytes += bytes;
@@ -506,27 +507,36 @@ ResidencyStats Residency::stats() const {
     return stats;
 }
 
+const ResidencyConfig& Residency::config() const {
+    return impl_->config;
+}
+
 std::span<const std::byte> Residency::bytes(uint32_t asset, uint32_t page) const {
     const StreamedAsset& a = impl_->at(asset);
     if (!a.isThere(page)) return {};
     return impl_->memoryOf(a.pages[page].slot, a.tables.pages[page].rawBytes);
 }
 
-const std::byte* Residency::row(uint32_t asset, StreamKind kind, uint32_t set, uint32_t row) const {
-    const StreamedAsset& a = impl_->at(asset);
-    const uint32_t index = row / impl_->config.pageRows, local = row % impl_->config.pageRows;
-    if (index >= impl_->slotCount || !impl_->slots[index].taken || impl_->slots[index].asset != asset) return nullptr;
-    const uint32_t page = impl_->slots[index].page;
-    if (!a.isThere(page) || local >= a.contents[page].rows) return nullptr;
+std::span<const std::byte> Residency::rows(uint32_t asset, uint32_t page, StreamKind kind, uint32_t set) const {
+    const std::span<const std::byte> all = bytes(asset, page);
+    if (all.empty()) return {};
+    const AssetView& tables = impl_->at(asset).tables;
     uint64_t at = 0;
     for (const StreamRecord& s :
-         a.tables.streams.subspan(a.tables.pages[page].firstStream, a.tables.pages[page].streamCount)) {
+         tables.streams.subspan(tables.pages[page].firstStream, tables.pages[page].streamCount)) {
         at = alignUp(at);
-        if (s.kind == kind && s.set == set)
-            return impl_->pool + index * impl_->slotBytes + at + size_t(local) * s.stride;
+        if (s.kind == kind && s.set == set) return all.subspan(size_t(at), size_t(s.rawBytes));
         at += s.rawBytes;
     }
-    return nullptr;
+    return {};
+}
+
+const std::byte* Residency::row(uint32_t asset, StreamKind kind, uint32_t set, uint32_t row) const {
+    const uint32_t index = row / impl_->config.pageRows, local = row % impl_->config.pageRows;
+    if (index >= impl_->slotCount || !impl_->slots[index].taken || impl_->slots[index].asset != asset) return nullptr;
+    const uint32_t page = impl_->slots[index].page, count = impl_->at(asset).contents[page].rows;
+    const std::span<const std::byte> stream = rows(asset, page, kind, set);
+    return stream.empty() || local >= count ? nullptr : stream.data() + stream.size() / count * local;
 }
 
 } // namespace xgc

@@ -5,6 +5,7 @@
 #include "xxh64.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 // What a page must be for its arrays to be followed without a test, as openAll has it for a whole file: collapse levels
@@ -97,6 +98,25 @@ Status checkPatch(const StreamedAsset& a, uint32_t page, uint32_t p, const Slot*
     return {};
 }
 
+/// As checkSkinRows does for a whole file.
+Status checkJoints(const StreamedAsset& a, uint32_t page, std::span<const std::byte> bytes) {
+    if (a.tables.joints.empty() || a.contents[page].rows == 0) return {};
+    std::array<VertexStream, AssetView::kMaxVertexStreams> streams;
+    uint32_t count = 0;
+    uint64_t at = 0;
+    const PageRecord& record = a.tables.pages[page];
+    for (const StreamRecord& s : a.tables.streams.subspan(record.firstStream, record.streamCount)) {
+        at = alignUp(at);
+        const bool ofSkin = s.kind == StreamKind::joints || s.kind == StreamKind::weights;
+        if (ofSkin && count < streams.size())
+            streams[count++] = {s.kind, s.format, s.set, s.stride, s.count, bytes.subspan(at, s.rawBytes)};
+        at += s.rawBytes;
+    }
+    Status status = checkSkinRows(a.tables, {streams.data(), count}, a.contents[page].rows);
+    status.element = page;
+    return status;
+}
+
 bool isWide(const StreamedAsset& a, uint32_t p) {
     return a.tables.patches[p].flags & kWideSlots;
 }
@@ -121,6 +141,7 @@ Status check(const StreamedAsset& a, uint32_t page, std::span<const std::byte> b
         return {StatusCode::badChecksum, "the page was altered on its way: it is read again; else copy the file again",
                 page};
     if (Status s = checkRows(a, page, streams); !s.ok()) return s;
+    if (Status s = checkJoints(a, page, bytes); !s.ok()) return s;
     return checkPatches(a, page, streams);
 }
 

@@ -91,35 +91,39 @@ inline bake::Model tubeModel(const TubeShape& shape = {}) {
 struct PosedModel {
     bake::AlignedBytes bytes;
     AssetView view;
-    std::string failure; ///< empty where it opened
+    bake::AlignedBytes pages; ///< the file, where it was baked in tiers
+    std::string failure;      ///< empty where it opened
 
-    explicit PosedModel(const bake::Model& model, uint32_t patchFaces = 512) {
+    explicit PosedModel(const bake::Model& model, uint32_t patchFaces = 512, const bake::PageOptions& cut = {}) {
         namespace fs = std::filesystem;
         const fs::path folder = fs::temp_directory_path() / ("xgc_posed_model_" + std::to_string(getpid()));
         fs::create_directories(folder);
         const bake::Status status = bake::exportModel(model, folder / "in.glb");
         failure = status.message;
-        if (status.ok()) bakeFile(folder / "in.glb", folder / "out.xgc", patchFaces);
+        if (status.ok()) bakeFile(folder / "in.glb", folder / "out.xgc", patchFaces, cut);
         fs::remove_all(folder);
     }
     explicit PosedModel(const std::filesystem::path& file, uint32_t patchFaces = 256) {
         const std::filesystem::path out =
             std::filesystem::temp_directory_path() / ("xgc_posed_model_" + std::to_string(getpid()) + ".xgc");
-        bakeFile(file, out, patchFaces);
+        bakeFile(file, out, patchFaces, {});
         std::filesystem::remove(out);
     }
     PosedModel(const PosedModel&) = delete;
     PosedModel& operator=(const PosedModel&) = delete;
 
 private:
-    void bakeFile(const std::filesystem::path& in, const std::filesystem::path& out, uint32_t patchFaces) {
+    void bakeFile(const std::filesystem::path& in, const std::filesystem::path& out, uint32_t patchFaces,
+                  const bake::PageOptions& cut) {
         bake::BakeOptions options;
         options.input = in;
         options.output = out;
         options.patchFaces = patchFaces;
+        options.pages = cut;
         bake::BakeReport report;
         bake::Status status = bake::bake(options, report);
         if (status.ok()) status = bake::readImage(out, bytes);
+        if (status.ok() && cut.tiers > 1) status = bake::readFile(out, pages);
         failure = status.message;
         if (!status.ok()) return;
         const Status opened = openAll(bytes.span(), view);

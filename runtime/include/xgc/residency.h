@@ -88,9 +88,9 @@ struct ResidencyStats {
 ///
 /// The pool is of slots, a page each: its bytes as they come from the reader, read in place. A row's number in index
 /// lists is slot * pageRows + its place in the page. Pages of tier 0 are read first and stay; until all are there an
-/// asset is not `ready`, and must not be in a scene. What is wanted most is what errs most on the screen without it;
-/// pages that nobody wants go first, then those that matter least. A page that is drawn goes in two steps: first
-/// selections must do without it, and when no draw list has it any more, its memory is reused.
+/// asset is not `ready`, and its instances must not be visible. What is wanted most is what errs most on the screen
+/// without it; pages that nobody wants go first, then those that matter least. A page that is drawn goes in two steps:
+/// first selections must do without it, and when no draw list has it any more, its memory is reused.
 ///
 /// `create` and `addAsset` allocate, nothing else does. One thread at a time, but for `complete`. Starts no threads and
 /// reads no files.
@@ -102,6 +102,7 @@ public:
     Residency& operator=(Residency&&) noexcept;
 
     Status create(const ResidencyConfig& config);
+    const ResidencyConfig& config() const;
 
     /// `tables`: opened by openTables, of several tiers; outlives its id here. On failure nothing changes, and the
     /// status' element is the value that would have sufficed.
@@ -137,6 +138,8 @@ public:
 
     /// Bytes of a page that is there, its streams as they lie uncompressed; else none.
     std::span<const std::byte> bytes(uint32_t asset, uint32_t page) const;
+    /// A stream of its rows, of those of `bytes`; empty where the page is not there or has no such stream.
+    std::span<const std::byte> rows(uint32_t asset, uint32_t page, format::StreamKind kind, uint32_t set) const;
     /// An element of a stream of rows; null where the row is not there or has no such stream.
     const std::byte* row(uint32_t asset, format::StreamKind kind, uint32_t set, uint32_t row) const;
 

@@ -19,10 +19,7 @@ std::span<const VertexStream> streamsOf(const AssetView& view) {
 /// What shaders read: anything else is stored for the host's own passes, or refused.
 Status checkStreams(const AssetView& view) {
     if (view.residence)
-        return {StatusCode::unsupported,
-                "the backend draws assets that are in memory as wholes: open the file with "
-                "xgc::decode and openAll",
-                0};
+        return {StatusCode::badArgument, "addAsset: the asset is streamed: see Renderer::addStreamedAsset", 0};
     bool hasPositions = false;
     for (const VertexStream& s : streamsOf(view)) {
         if (s.kind != format::StreamKind::position) continue;
@@ -96,9 +93,10 @@ uint64_t AssetStore::bytesOf(const AssetView& view, bool morphs) {
     return units * kAlignment;
 }
 
-Status AssetStore::place(const AssetView& view, StoredAsset& asset) {
-    const uint64_t units = bytesOf(view, morphs_) / kAlignment;
-    if (!arenaRanges_.allocate(units, asset.bytes)) {
+Status AssetStore::place(StoredAsset& asset) {
+    const AssetView& view = asset.view;
+    const uint64_t units = view.residence ? 0 : bytesOf(view, morphs_) / kAlignment;
+    if (units > 0 && !arenaRanges_.allocate(units, asset.bytes)) {
         return {StatusCode::outOfCapacity, "the vertex arena is full: raise RendererConfig::vertexArenaBytes",
                 units * kAlignment};
     }
@@ -150,30 +148,52 @@ void AssetStore::writeMaterials(const StoredAsset& asset) {
     }
 }
 
-Status AssetStore::add(const AssetView& view, AssetHandle& handle) {
-    const Status usable = checkStreams(view);
-    if (!usable.ok()) return usable;
+Status AssetStore::enter(StoredAsset&& asset, AssetHandle& handle) {
     const auto slot = std::find_if(assets_.begin(), assets_.end(), [](const StoredAsset& a) { return !a.alive(); });
     if (slot == assets_.end()) {
         return {StatusCode::outOfCapacity, "too many assets: raise RendererConfig::assetCapacity", assets_.size() + 1};
     }
+    asset.generation = slot->generation + 1;
+    const Status status = place(asset);
+    if (!status.ok()) return status;
+    const auto index = uint32_t(slot - assets_.begin());
+    if (!asset.view.residence) queueStreams(asset, index);
+    writeMaterials(asset);
+    asset.partColors = colorParts(asset.view, shader::kPartColorCount);
+    *slot = std::move(asset);
+    handle = {index, slot->generation};
+    return {};
+}
+
+Status AssetStore::add(const AssetView& view, AssetHandle& handle) {
+    const Status usable = checkStreams(view);
+    if (!usable.ok()) return usable;
     StoredAsset asset;
     asset.view = view;
-    asset.generation = slot->generation + 1;
     if (morphs_) {
         asset.morphRows.resize(view.record->vertexCount);
         const Status listed = morphRows(view, asset.morphRows);
         if (!listed.ok()) return listed;
     }
-    const Status status = place(view, asset);
-    if (!status.ok()) return status;
-    const auto index = uint32_t(slot - assets_.begin());
-    queueStreams(asset, index);
-    writeMaterials(asset);
-    asset.partColors = colorParts(view, shader::kPartColorCount);
-    *slot = std::move(asset);
-    handle = {index, slot->generation};
-    return {};
+    return enter(std::move(asset), handle);
+}
+
+Status AssetStore::addStreamed(const AssetView& view, uint32_t residencyAsset, const StreamedRows& rows,
+                               AssetHandle& handle) {
+    const Status usable = rows.check(view);
+    if (!usable.ok()) return usable;
+    StoredAsset asset;
+    asset.view = view;
+    asset.streamed = residencyAsset;
+    asset.positions = rows.address(view, format::StreamKind::position, 0);
+    asset.normals = rows.address(view, format::StreamKind::normal, 0);
+    asset.colors = rows.address(view, format::StreamKind::color, 0);
+    asset.colorFormat = format::StreamFormat::unorm8x4;
+    for (uint32_t set = 0; !view.joints.empty() && set < 2; ++set) {
+        asset.joints[set] = rows.address(view, format::StreamKind::joints, set);
+        asset.weights[set] = rows.address(view, format::StreamKind::weights, set);
+    }
+    return enter(std::move(asset), handle);
 }
 
 Status AssetStore::remove(AssetHandle handle, uint64_t frame) {

@@ -3,6 +3,7 @@
 #include "buffer.h"
 #include "range_list.h"
 #include "shared.h"
+#include "streamed_rows.h"
 #include "uploader.h"
 
 #include <xgc/morph.h>
@@ -17,8 +18,9 @@ namespace xgc::vulkan {
 /// An asset on the device.
 struct StoredAsset {
     AssetView view;
-    uint32_t generation = 0; ///< odd while it is there
-    uint32_t sceneAsset = 0; ///< its id in the renderer's scene
+    uint32_t streamed = format::kNone; ///< its id in the residency
+    uint32_t generation = 0;           ///< odd while it is there
+    uint32_t sceneAsset = 0;           ///< its id in the renderer's scene
     uint32_t instanceCount = 0;
     bool onGpu = false;         ///< compute shaders can draw it
     RangeList::Range bytes;     ///< in the vertex arena, units of AssetStore::kAlignment
@@ -46,6 +48,8 @@ public:
     Status create(const Context& context, const RendererConfig& config);
 
     Status add(const AssetView& view, AssetHandle& handle);
+    /// Of a residency: its rows lie in `rows`.
+    Status addStreamed(const AssetView& view, uint32_t residencyAsset, const StreamedRows& rows, AssetHandle& handle);
     /// Memory returns to the arena framesInFlight frames after `frame`.
     Status remove(AssetHandle handle, uint64_t frame);
     /// Gives back what no frame in flight reads.
@@ -74,7 +78,9 @@ private:
         RangeList::Range bytes, materials;
     };
 
-    Status place(const AssetView& view, StoredAsset& asset);
+    /// Enters what add and addStreamed have in common; `asset` has its view.
+    Status enter(StoredAsset&& asset, AssetHandle& handle);
+    Status place(StoredAsset& asset);
     void queueStreams(StoredAsset& asset, uint32_t index);
     void writeMaterials(const StoredAsset& asset);
 

@@ -69,6 +69,7 @@ Status Renderer::Impl::allocate() {
         if (status.ok()) status = view.draws.create(drawListConfig(config));
     }
     if (status.ok()) status = assets.create(*context, config);
+    if (status.ok()) status = streamedRows.create(*context, config);
     if (status.ok()) {
         status = indexArena.create(*context, config.indexBytes,
                                    VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
@@ -116,35 +117,58 @@ Status Renderer::create(const Context& context, const RendererConfig& config) {
 
 // Assets and instances ----------------------------------------------------------------------------------------------
 
-Status Renderer::addAsset(const AssetView& asset, AssetHandle& out) {
-    Impl& self = *impl_;
-    AssetHandle handle;
-    Status status = self.assets.add(asset, handle);
-    if (!status.ok()) return status;
-    StoredAsset& stored = self.assets.at(handle.index);
-    status = self.scene.addAsset({.asset = &stored.view, .firstMaterial = uint32_t(stored.materials.first)},
-                                 stored.sceneAsset);
+/// Brings a stored asset into scene, cache and compute path, or takes it out of the store again.
+Status Renderer::Impl::enterAsset(AssetHandle handle) {
+    StoredAsset& stored = assets.at(handle.index);
+    // Of a streamed one the residency's own view: it knows its assets by that.
+    const AssetView& view = stored.streamed == format::kNone ? stored.view : config.residency->view(stored.streamed);
+    Status status =
+        scene.addAsset({.asset = &view, .firstMaterial = uint32_t(stored.materials.first)}, stored.sceneAsset);
     if (status.ok()) {
-        status = self.indexCache.addAsset(stored.sceneAsset, stored.view);
+        status = indexCache.addAsset(stored.sceneAsset, view);
         if (status.ok()) {
-            status = self.addGpuAsset(stored);
-            if (!status.ok()) self.indexCache.removeAsset(stored.sceneAsset);
+            status = addGpuAsset(stored);
+            if (!status.ok()) indexCache.removeAsset(stored.sceneAsset);
         }
-        if (!status.ok()) self.scene.removeAsset(stored.sceneAsset);
+        if (!status.ok()) scene.removeAsset(stored.sceneAsset);
     }
-    if (!status.ok()) {
-        const Status removed = self.assets.remove(handle, self.frame);
-        assert(removed.ok());
-        (void)removed;
-        return status;
+    if (status.ok()) {
+        storedAsset[stored.sceneAsset] = handle.index;
+        return {};
     }
-    self.storedAsset[stored.sceneAsset] = handle.index;
-    out = handle;
-    return {};
+    const Status removed = assets.remove(handle, frame);
+    assert(removed.ok());
+    (void)removed;
+    return status;
+}
+
+Status Renderer::addAsset(const AssetView& asset, AssetHandle& out) {
+    AssetHandle handle;
+    Status status = impl_->assets.add(asset, handle);
+    if (status.ok()) status = impl_->enterAsset(handle);
+    if (status.ok()) out = handle;
+    return status;
+}
+
+Status Renderer::addStreamedAsset(uint32_t residencyAsset, AssetHandle& out) {
+    Impl& self = *impl_;
+    if (!self.config.residency)
+        return {StatusCode::badArgument, "addStreamedAsset: there is no RendererConfig::residency", 0};
+    AssetHandle handle;
+    Status status =
+        self.assets.addStreamed(self.config.residency->view(residencyAsset), residencyAsset, self.streamedRows, handle);
+    if (status.ok()) status = self.enterAsset(handle);
+    if (status.ok()) out = handle;
+    return status;
+}
+
+bool Renderer::Impl::resident(uint32_t asset) const {
+    const StoredAsset& stored = assets.at(asset);
+    return stored.streamed == format::kNone ? assets.uploads().done(asset) : config.residency->ready(stored.streamed);
 }
 
 bool Renderer::resident(AssetHandle asset) const {
-    return impl_->assets.find(asset) && impl_->assets.uploads().done(asset.index);
+    return impl_->assets.find(asset) && impl_->resident(asset.index);
 }
 
 Status Renderer::removeAsset(AssetHandle handle) {
@@ -233,6 +257,8 @@ Status Renderer::setPose(InstanceHandle handle, const Pose& pose) {
     if ((joints > 0 && joints != asset.joints.size()) || (weights > 0 && weights != asset.morphTargets.size())) {
         return {StatusCode::badArgument, "setPose: give a matrix a joint and a weight a target of the asset", joints};
     }
+    if (weights > 0 && asset.residence)
+        return {StatusCode::unsupported, "setPose: no morph target moves a streamed asset", weights};
     if (joints > 0 && instance->joints.count == 0 && !self.jointRanges.allocate(joints, instance->joints)) {
         return {StatusCode::outOfCapacity, "too many joints: raise RendererConfig::jointCapacity", joints};
     }

@@ -17,8 +17,11 @@ Status Renderer::beginFrame() {
     self.assets.reclaim(self.frame, self.config.framesInFlight);
     self.records.begin(self.frame);
     self.staging.begin(self.frame);
-    // Streams take at most half, so that levels can change while assets arrive.
-    self.assets.uploads().fill(self.staging, self.staging.bytesPerFrame() / 2);
+    // Pages first, since they are drawn from now on. All streams take at most half, so that levels can change while
+    // assets arrive.
+    self.streamedRows.update(self.staging);
+    const VkDeviceSize half = self.staging.bytesPerFrame() / 2;
+    self.assets.uploads().fill(self.staging, half - std::min(half, self.streamedRows.bytes()));
     const std::span<std::byte> rest = self.staging.take(self.staging.freeBytes(), self.indexStagingOffset);
     self.indexCache.beginFrame(rest);
     self.passCount = 0;
@@ -30,8 +33,7 @@ Status Renderer::beginFrame() {
 void Renderer::Impl::showResident() {
     for (uint32_t id = 0; id < instanceEnd; ++id) {
         const StoredInstance& instance = instances[id];
-        if (instance.generation % 2 == 1)
-            scene.setVisible(id, instance.visible && assets.uploads().done(instance.asset));
+        if (instance.generation % 2 == 1) scene.setVisible(id, instance.visible && resident(instance.asset));
     }
 }
 
@@ -52,7 +54,7 @@ void Renderer::select(uint32_t view, const SelectionDesc& desc) {
 Status Renderer::setLevels(InstanceHandle handle, Levels levels, std::span<const float> fractions) {
     const StoredInstance* instance = impl_->find(handle);
     if (!instance) return {StatusCode::badArgument, "setLevels: no such instance", handle.index};
-    if (!impl_->assets.uploads().done(instance->asset)) {
+    if (!impl_->resident(instance->asset)) {
         return {StatusCode::outOfCapacity,
                 "the asset is still on its way: ask again next frame, or raise RendererConfig::stagingBytes",
                 instance->asset};
@@ -100,6 +102,7 @@ void Renderer::Impl::writeLambdas(uint32_t view) {
     for (const uint32_t id : list.drawInstances()) {
         if (list.kind(id) != InstanceKind::mixed || list.fractions(id).empty()) continue;
         const AssetView& asset = assets.at(instances[id].asset).view;
+        if (asset.residence) continue;
         const uint32_t count = groupCount(asset);
         if (count > config.morphGroupCapacity - used) {
             ++stats.unmorphedInstances;
@@ -132,6 +135,7 @@ void Renderer::endFrame() {
         stored.draws.update(self.scene, stored.selection, self.indexCache);
         self.writeDraws(view);
         self.writeLambdas(view);
+        if (self.config.residency) self.config.residency->drawn(self.scene, stored.draws);
         const DrawStats& drawn = stored.draws.stats();
         self.stats.triangles += drawn.triangles;
         self.stats.draws += uint32_t(stored.draws.draws().size());
@@ -148,7 +152,7 @@ void Renderer::endFrame() {
     }
     const IndexCacheStats cache = self.indexCache.stats();
     self.stats.patchesRebuilt = cache.misses;
-    self.stats.uploadBytes = cache.uploadBytes + uint32_t(self.assets.uploads().bytes());
+    self.stats.uploadBytes = cache.uploadBytes + uint32_t(self.assets.uploads().bytes() + self.streamedRows.bytes());
 }
 
 } // namespace xgc::vulkan

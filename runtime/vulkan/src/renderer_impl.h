@@ -5,6 +5,7 @@
 #include "gpu_view.h"
 #include "pipelines.h"
 #include "staging_ring.h"
+#include "streamed_rows.h"
 #include "timeline.h"
 
 #include <xgc/vulkan/renderer.h>
@@ -18,8 +19,9 @@
 // Memory of the backend, all taken by `create`:
 //
 //   device-local   [ vertex arena: streams of assets, by address ]   [ index arena: ranges of the draw list ]
-//                        ^ copies                                        ^ copies
-//   mapped         [ staging: streams | indices ] x frames in flight
+//                        ^ copies   [ rows of the residency's pool ]     ^ copies
+//                        |               ^ copies                        |
+//   mapped         [ staging: pages | streams | indices ] x frames in flight
 //   mapped         [ views | instances | draws | commands | lambdas ] x frames in flight     [ materials ]
 //
 // Frame n writes part n % framesInFlight of the mapped buffers after it waited for frame n - framesInFlight.
@@ -52,6 +54,7 @@ struct Renderer::Impl {
     RendererConfig config;
     Pipelines pipelines;
     AssetStore assets;
+    StreamedRows streamedRows;
     Buffer indexArena;
     StagingRing staging;
     FrameRecords records;
@@ -88,6 +91,8 @@ struct Renderer::Impl {
     const char* hostReason(uint32_t view, const SelectionDesc& desc) const;
     void writeGpu();
     StoredInstance* find(InstanceHandle handle);
+    Status enterAsset(AssetHandle handle);
+    bool resident(uint32_t asset) const;
     void showResident();
     void writePoses();
     void releasePose(StoredInstance& instance);

@@ -43,6 +43,11 @@ void Renderer::recordTransfers(VkCommandBuffer cmd) const {
         vk.vkCmdCopyBuffer(cmd, self.staging.handle(), self.assets.arena().handle(), uint32_t(streams.size()),
                            streams.data());
     }
+    const std::span<const VkBufferCopy> pages = self.streamedRows.copies();
+    if (!pages.empty()) {
+        vk.vkCmdCopyBuffer(cmd, self.staging.handle(), self.streamedRows.rows().handle(), uint32_t(pages.size()),
+                           pages.data());
+    }
     if (!self.indexCopies.empty()) {
         vk.vkCmdCopyBuffer(cmd, self.staging.handle(), self.indexArena.handle(), uint32_t(self.indexCopies.size()),
                            self.indexCopies.data());
@@ -50,7 +55,7 @@ void Renderer::recordTransfers(VkCommandBuffer cmd) const {
     for (const StoredView& view : self.views) {
         if (view.onDevice()) view.gpu.record(cmd, self.gpuPipelines);
     }
-    if (streams.empty() && self.indexCopies.empty()) return;
+    if (streams.empty() && pages.empty() && self.indexCopies.empty()) return;
     memoryBarrier(vk, cmd, {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT},
                   {VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT | VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT,
                    VK_ACCESS_2_INDEX_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <xgc/draw_list.h>
+#include <xgc/residency.h>
 #include <xgc/vulkan/camera.h>
 #include <xgc/vulkan/context.h>
 
@@ -79,6 +80,13 @@ struct RendererConfig {
     uint32_t jointCapacity = 0;       ///< sum of the joints of all instances with a pose
     uint32_t morphWeightCapacity = 0; ///< sum of the targets of all instances with a pose
 
+    // Streamed assets.
+    /// Whose assets can be drawn: created, not updated yet; outlives the renderer. Beside its pool it takes 16 bytes of
+    /// device memory a row (ResidencyConfig::pageRows a slot), and what follows.
+    Residency* residency = nullptr;
+    bool streamedColors = true;     ///< 4 bytes a row
+    uint32_t streamedJointSets = 0; ///< 24 bytes a row each, for assets with skins; at most 2
+
     GpuPathConfig gpu;
 };
 
@@ -138,7 +146,7 @@ struct FrameStats {
     uint32_t draws = 0;
     uint32_t patchesChanged = 0;     ///< got another level
     uint32_t patchesRebuilt = 0;     ///< index lists that were built, patches' or whole assets'
-    uint32_t uploadBytes = 0;        ///< indices and vertex streams
+    uint32_t uploadBytes = 0;        ///< indices, vertex streams and rows of pages
     uint32_t deferredInstances = 0;  ///< are not drawn at the levels that were selected: staging or arena was full
     uint32_t unmorphedInstances = 0; ///< stand at their levels: RendererConfig::morphGroupCapacity is too small
 };
@@ -161,6 +169,7 @@ struct FrameGeometry {
 
 /// Draws instances of assets at any mix of levels with the host's device, queue and attachments. A frame:
 ///
+///     residency.want(..) for each view, where assets are streamed
 ///     renderer.beginFrame();                        // waits for the frame framesInFlight ago, for nothing else
 ///     for each view: renderer.select(view, desc);   // or setLevels, instance by instance
 ///     renderer.endFrame();
@@ -185,9 +194,15 @@ public:
 
     /// Starts sending the asset's streams, some each frame. The view and its bytes outlive the asset here.
     Status addAsset(const AssetView& asset, AssetHandle& handle);
-    /// True once a frame up to the current one has everything of the asset: its instances can be drawn.
+    /// An asset of RendererConfig::residency, which the renderer updates in `beginFrame` and tells in `endFrame` what
+    /// its views draw: the host calls `want` alone. Its instances are drawn once it is ready. Selected on the host, it
+    /// does not morph, and no morph target moves it.
+    Status addStreamedAsset(uint32_t residencyAsset, AssetHandle& handle);
+    /// True once a frame up to the current one has everything of the asset, or the first pages of a streamed one: its
+    /// instances can be drawn.
     bool resident(AssetHandle asset) const;
-    /// Its instances must be gone. Its memory is reused when no frame in flight reads it.
+    /// Its instances must be gone. Its memory is reused when no frame in flight reads it; the residency's asset may be
+    /// removed framesInFlight frames later.
     Status removeAsset(AssetHandle asset);
 
     /// Drawn once its asset is resident and a view selects it.
