@@ -1,5 +1,6 @@
 #include "counted_allocations.h"
 #include "meshes/patched_torus.h"
+#include "random.h"
 
 #include <xgc/draw_list.h>
 
@@ -8,24 +9,12 @@
 
 #include <array>
 #include <map>
-#include <random>
 #include <set>
 
 namespace {
 
 using namespace xgc;
-
-class Random {
-public:
-    explicit Random(uint32_t seed) : engine_(seed) {}
-    uint32_t below(uint32_t n) { return uint32_t(engine_() % n); }
-    float between(float a, float b) { return a + (b - a) * float(engine_() % 100001u) / 100000.0f; }
-    glm::vec3 point(float size) { return {between(-size, size), between(-size, size), between(-size, size)}; }
-    Placement placement(float size) { return makePlacement(glm::translate(glm::mat4(1), point(size))); }
-
-private:
-    std::mt19937 engine_;
-};
+using test::Random;
 
 /// What a renderer with an index arena does, and more: it fails where a copy lands in memory that a frame in flight
 /// draws, and poisons all that is not in flight and that no list holds.
@@ -221,6 +210,10 @@ void checkNoHole(const Stage& stage, const Selection& selection, const DrawList&
     }
 }
 
+Placement somewhere(Random& random, float size) {
+    return makePlacement(glm::translate(glm::mat4(1), random.point(size)));
+}
+
 SelectionDesc wandering(Random& random) {
     SelectionDesc desc;
     const glm::vec3 eye = random.point(20), target = random.point(20);
@@ -243,7 +236,7 @@ uint64_t randomRun(const Assets& assets, uint32_t arenaBytes, uint32_t stagingBy
     uint64_t deferred = 0, wholes = 0, mixeds = 0;
     for (int frame = 0; frame < 300; ++frame) {
         if (random.below(4) == 0 && ids.size() < 20) {
-            const uint32_t id = stage.place(kinds[random.below(2)], random.placement(15));
+            const uint32_t id = stage.place(kinds[random.below(2)], somewhere(random, 15));
             ids.insert(id);
             seen.erase(id);
         }
@@ -303,7 +296,7 @@ TEST_CASE("under a cap of uploads every instance comes to what was selected, if 
     const uint32_t kind = stage.add(assets.large.view, 0, 0);
     Random random(5);
     std::vector<uint32_t> ids;
-    for (int i = 0; i < 6; ++i) ids.push_back(stage.place(kind, random.placement(5)));
+    for (int i = 0; i < 6; ++i) ids.push_back(stage.place(kind, somewhere(random, 5)));
     for (int round = 0; round < 4; ++round) {
         SelectionDesc desc = wandering(random);
         desc.frustum = {};
@@ -387,7 +380,7 @@ TEST_CASE("what is drawn keeps a budget while uploads lag behind") {
     Stage stage(1, kRoomy, 12 * 500);
     const uint32_t kind = stage.add(assets.large.view, 0, 0);
     Random random(6);
-    for (int i = 0; i < 10; ++i) stage.place(kind, random.placement(8));
+    for (int i = 0; i < 10; ++i) stage.place(kind, somewhere(random, 8));
     uint32_t late = 0;
     for (int i = 0; i < 200; ++i) {
         SelectionDesc desc = wandering(random);
@@ -409,7 +402,7 @@ TEST_CASE("an asset can leave while frames that draw it are in flight") {
     Random random(7);
     for (int i = 0; i < 30; ++i) {
         const uint32_t kind = stage.add(i % 2 ? assets.large.view : assets.small.view, 0, 0);
-        const uint32_t id = stage.place(kind, random.placement(9));
+        const uint32_t id = stage.place(kind, somewhere(random, 9));
         stage.selections[0].update(stage.scene, wandering(random));
         stage.frame();
         checkDraws(stage, stage.lists[0]);
@@ -426,7 +419,7 @@ TEST_CASE("updates allocate nothing") {
     Stage stage(2, kRoomy, kRoomy);
     const uint32_t kind = stage.add(assets.large.view, 0, 0);
     Random random(8);
-    for (int i = 0; i < 20; ++i) stage.place(kind, random.placement(15));
+    for (int i = 0; i < 20; ++i) stage.place(kind, somewhere(random, 15));
     const uint64_t before = test::allocations;
     uint64_t triangles = 0;
     for (int i = 0; i < 100; ++i) {

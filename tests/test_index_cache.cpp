@@ -4,6 +4,7 @@
 #include "counted_allocations.h"
 #include "meshes/patched_torus.h"
 #include "meshes/toy_asset.h"
+#include "random.h"
 
 #include <xgc/index_cache.h>
 
@@ -15,7 +16,6 @@
 #include <deque>
 #include <map>
 #include <numeric>
-#include <random>
 #include <set>
 #include <string>
 #include <unordered_map>
@@ -34,6 +34,7 @@ using xgc::IndexRange;
 using xgc::Levels;
 using xgc::Status;
 using xgc::StatusCode;
+using xgc::test::Random;
 using States = std::vector<uint8_t>;
 using Triangles = std::vector<std::array<uint32_t, 3>>;
 
@@ -120,20 +121,6 @@ private:
     std::vector<std::byte> arena_;
     uint32_t framesInFlight_;
     std::deque<std::vector<Draw>> frames_; ///< not yet drawn
-};
-
-class Random {
-public:
-    explicit Random(uint32_t seed) : engine_(seed) {}
-    uint32_t below(uint32_t n) { return uint32_t(engine_() % n); }
-    States levels(const AssetView& asset) {
-        States l(asset.patchCount());
-        for (uint8_t& x : l) x = uint8_t(below(asset.levelCount()));
-        return l;
-    }
-
-private:
-    std::minstd_rand engine_;
 };
 
 /// Assets of different shape: two known by construction, made vertices, and many patches that vanish.
@@ -412,7 +399,7 @@ TEST_CASE("the arena holds what buildIndices draws in each state that is held or
     const Assets assets;
     for (const uint32_t framesInFlight : {1u, 2u, 3u}) {
         const IndexCacheConfig roomy{.arenaBytes = 4u << 20, .framesInFlight = framesInFlight};
-        const Tally fits = Workload(assets, roomy, 1u << 20, framesInFlight).run(150);
+        const Tally fits = Workload(assets, roomy, 1u << 20, framesInFlight + 40).run(150);
         CHECK(fits.refused == 0);
         CHECK(fits.evictions == 0);
         CHECK(fits.hits > 500);
@@ -421,7 +408,7 @@ TEST_CASE("the arena holds what buildIndices draws in each state that is held or
         // Too little of everything: some must wait, and nothing breaks.
         IndexCacheConfig tight = roomy;
         tight.arenaBytes = 16000;
-        const Tally full = Workload(assets, tight, 6001, framesInFlight + 10).run(150);
+        const Tally full = Workload(assets, tight, 6001, framesInFlight + 50).run(150);
         CHECK(full.refused > 100);
         CHECK(full.evictions > 500);
         // An arena that suffices for what is held, so that ranges come and go without end.

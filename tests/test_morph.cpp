@@ -2,6 +2,7 @@
 #include "meshes/baked_model.h"
 #include "meshes/patched_torus.h"
 #include "meshes/toy_asset.h"
+#include "random.h"
 
 #include <xgc/morph.h>
 #include <xgc/select.h>
@@ -10,21 +11,11 @@
 
 #include <algorithm>
 #include <map>
-#include <random>
 
 namespace {
 
 using namespace xgc;
-
-class Random {
-public:
-    explicit Random(uint32_t seed) : engine_(seed) {}
-    uint32_t below(uint32_t n) { return uint32_t(engine_() % n); }
-    float unit() { return float(engine_() % 100001u) / 100000.0f; }
-
-private:
-    std::minstd_rand engine_;
-};
+using test::Random;
 
 /// An asset and its table, under a name for messages.
 struct Subject {
@@ -75,7 +66,7 @@ std::vector<uint8_t> randomLevels(const AssetView& asset, Random& random) {
 std::vector<float> randomFractions(const AssetView& asset, Levels levels, Random& random) {
     std::vector<float> fractions(levels.size());
     for (size_t p = 0; p < levels.size(); ++p) {
-        if (uint32_t(levels[p]) + 1 < asset.levelCount()) fractions[p] = random.unit() * kMaxFraction;
+        if (uint32_t(levels[p]) + 1 < asset.levelCount()) fractions[p] = random.between(0, 1) * kMaxFraction;
     }
     return fractions;
 }
@@ -257,8 +248,9 @@ TEST_CASE("no row moves faster than its speed while lambdas change") {
             for (int step = 0; step < 10; ++step) {
                 constexpr float kRate = 0.125f;
                 for (size_t p = 0; p < levels.size(); ++p) {
-                    const float lambda = std::clamp(float(levels[p]) + fractions[p] + (2 * random.unit() - 1) * kRate,
-                                                    0.0f, float(s.asset.levelCount() - 1));
+                    const float lambda =
+                        std::clamp(float(levels[p]) + fractions[p] + (2 * random.between(0, 1) - 1) * kRate, 0.0f,
+                                   float(s.asset.levelCount() - 1));
                     levels[p] = uint8_t(lambda);
                     fractions[p] = std::min(lambda - float(levels[p]), kMaxFraction);
                 }

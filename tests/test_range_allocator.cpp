@@ -1,27 +1,14 @@
 #include "../runtime/src/range_allocator.h"
+#include "random.h"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <map>
-#include <random>
 #include <vector>
 
-namespace {
-
-class Random {
-public:
-    explicit Random(uint32_t seed) : engine_(seed) {}
-    uint32_t below(uint32_t n) { return uint32_t(engine_() % n); }
-
-private:
-    std::minstd_rand engine_;
-};
-
-} // namespace
-
 TEST_CASE("ranges never overlap, and all of it is one range when all are free") {
-    Random random(3);
+    xgc::test::Random random(3);
     constexpr uint32_t kSize = 5000;
     xgc::RangeAllocator allocator;
     REQUIRE(allocator.create(kSize, 64));
@@ -56,7 +43,7 @@ TEST_CASE("ranges never overlap, and all of it is one range when all are free") 
 }
 
 TEST_CASE("a request is refused only where no free range holds it") {
-    Random random(4);
+    xgc::test::Random random(4);
     constexpr uint32_t kSize = 2000;
     xgc::RangeAllocator allocator;
     REQUIRE(allocator.create(kSize, 1000));

@@ -1,3 +1,5 @@
+#include "random.h"
+
 #include <xgc/select.h>
 
 #include <doctest/doctest.h>
@@ -5,7 +7,6 @@
 
 #include <cmath>
 #include <limits>
-#include <random>
 #include <vector>
 
 namespace {
@@ -49,15 +50,6 @@ int levelAt(const Bounds& b, glm::vec3 eye, const Policy& policy, float pixelsPe
     return levelsOf(b, xgc::Placement{}, {eye, pixelsPerUnit}, policy)[0];
 }
 
-class Random {
-public:
-    float between(float a, float b) { return a + (b - a) * float(engine_() % 100001u) / 100000.0f; }
-    glm::vec3 point(float size) { return {between(-size, size), between(-size, size), between(-size, size)}; }
-
-private:
-    std::minstd_rand engine_{7};
-};
-
 } // namespace
 
 TEST_CASE("makeView: a world unit at distance one covers pixelsPerUnit pixels") {
@@ -78,7 +70,7 @@ TEST_CASE("makePlacement: maxScale is the largest singular value, never below it
     flat[3].w = 1;
     CHECK(xgc::makePlacement(flat).maxScale == 3);
 
-    Random random;
+    xgc::test::Random random(7);
     for (int i = 0; i < 2000; ++i) {
         glm::mat4 m(1);
         const float size = i % 2 ? 1e-6f : 1e6f;
@@ -147,7 +139,7 @@ TEST_CASE("squares that overflow or vanish choose the finer level") {
 }
 
 TEST_CASE("levels never become finer as the eye goes away") {
-    Random random;
+    xgc::test::Random random(7);
     const std::vector<float> thresholds = {0.5f, 1, 2, 4, 8};
     for (int i = 0; i < 200; ++i) {
         const glm::vec3 c = random.point(10);
@@ -168,7 +160,7 @@ TEST_CASE("levels never become finer as the eye goes away") {
 }
 
 TEST_CASE("the pixel bound holds in double precision, and the next level breaks it") {
-    Random random;
+    xgc::test::Random random(7);
     for (int i = 0; i < 20000; ++i) {
         const glm::vec3 c = random.point(20);
         const float e = random.between(1e-4f, 0.5f);
@@ -211,7 +203,7 @@ TEST_CASE("projectedError is the largest over the patches, infinite inside bound
 }
 
 TEST_CASE("moving the eye and the asset together changes nothing") {
-    Random random;
+    xgc::test::Random random(7);
     const Bounds b({{1, 2, 3, 1}, {-4, 0, 2, 0.5f}, {0, 0, 0, 3}}, {0, 0.01f, 0.02f, 0.04f, 0.08f}, 6);
     const std::vector<float> thresholds = {1, 2, 3, 4};
     for (int i = 0; i < 2000; ++i) {

@@ -1,7 +1,7 @@
 #include "counted_allocations.h"
 #include "meshes/patched_torus.h"
 #include "meshes/toy_asset.h"
-#include "random_placement.h"
+#include "random.h"
 
 #include <xgc/parts.h>
 #include <xgc/selection.h>

@@ -3,7 +3,7 @@
 #include "meshes/baked_model.h"
 #include "meshes/patched_torus.h"
 #include "meshes/posed_model.h"
-#include "random_placement.h"
+#include "random.h"
 
 #include "barriers.h"
 #include "gpu_view.h"

@@ -6,10 +6,11 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <random>
+#include <vector>
 
 namespace xgc::test {
 
-/// Numbers, places and placements that are the same on every machine.
+/// Numbers, places, placements and states that are the same on every machine.
 class Random {
 public:
     explicit Random(uint32_t seed) : engine_(seed) {}
@@ -23,6 +24,13 @@ public:
         m = glm::rotate(m, between(0, 6), direction());
         const float mirror = below(2) ? 1.0f : -1.0f;
         return makePlacement(glm::scale(m, glm::vec3(mirror * between(0.5f, 2), between(0.5f, 2), between(0.5f, 2))));
+    }
+
+    /// Any level for each patch.
+    std::vector<uint8_t> levels(const AssetView& asset) {
+        std::vector<uint8_t> out(asset.patchCount());
+        for (uint8_t& level : out) level = uint8_t(below(asset.levelCount()));
+        return out;
     }
 
 private:
