@@ -33,6 +33,8 @@ struct Options {
     uint32_t shadowTexels = 4096;
     float errorPixels = 1;
     bool still = false;
+    bool gpu = false;
+    bool eyeShadows = false;
 };
 
 // Destroyed from the last up: the target waits for its frames before anything that they use goes.
@@ -74,6 +76,7 @@ vulkan::RendererConfig configFor(const App& app) {
     config.patchCapacity += kCreatures * app.creature.view.patchCount();
     config.indexBytes += 64u << 20;
     config.viewCapacity = 2;
+    if (app.options.gpu) config.gpu.views = 2;
     config.waitNanoseconds = 120'000'000'000; // a software device takes its time
     return config;
 }
@@ -145,7 +148,8 @@ vulkan::ViewDesc viewFor(const App& app, const vulkan::SunView& sunView, const g
     return view;
 }
 
-/// The camera's levels, and the sun's: no caster is more than a level coarser than what is seen of it.
+/// The camera's levels, and the sun's: no caster is more than a level coarser than what is seen of it; or those that
+/// the camera's eye asks for, for the device refers to no other view.
 void select(App& app, const vulkan::ViewDesc& view, const vulkan::SunView& sun) {
     SelectionDesc desc;
     desc.view = makeView(view.camera.eye, view.camera.fovY, float(app.options.height));
@@ -154,10 +158,14 @@ void select(App& app, const vulkan::ViewDesc& view, const vulkan::SunView& sun) 
     desc.pixels = app.options.errorPixels;
     app.renderer.select(0, desc);
     SelectionDesc shadow;
-    shadow.view = sun.view;
+    if (app.options.gpu || app.options.eyeShadows) {
+        shadow = desc;
+    } else {
+        shadow.view = sun.view;
+        shadow.reference = &app.renderer.selection(0);
+        shadow.coarserThanReference = 1;
+    }
     shadow.frustum = makeFrustum(sun.worldToClip);
-    shadow.reference = &app.renderer.selection(0);
-    shadow.coarserThanReference = 1;
     app.renderer.select(1, shadow);
 }
 
@@ -191,10 +199,26 @@ bake::Status writeFrame(App& app, uint64_t ticket, uint32_t frame) {
     image.pixels.resize(size_t(image.width) * image.height);
     const Status read = app.target.read(ticket, std::as_writable_bytes(std::span(image.pixels)));
     if (!read.ok()) return fromRuntime(read);
-    const vulkan::FrameStats& stats = app.renderer.stats();
+    vulkan::FrameStats stats = app.renderer.stats();
+    for (uint32_t view = 0; view < 2 && app.options.gpu; ++view) {
+        stats.triangles += app.renderer.gpuStats(view).triangles;
+        stats.draws += app.renderer.gpuStats(view).draws;
+    }
     fmt::print("{{\"frame\": {}, \"triangles\": {}, \"draws\": {}, \"uploadBytes\": {}}}\n", frame, stats.triangles,
                stats.draws, stats.uploadBytes);
     return bake::writePng(image, app.options.output / fmt::format("frame_{:04}.png", frame));
+}
+
+/// Assets arrive in pieces, and what the device made is known framesInFlight frames later.
+bake::Status settle(App& app, uint64_t& ticket) {
+    bake::Status status;
+    for (uint32_t still = 0; status.ok() && still <= (app.options.gpu ? vulkan::RendererConfig{}.framesInFlight : 0);) {
+        status = fromRuntime(drawFrame(app, 0, ticket));
+        still = app.renderer.stats().uploadBytes > 0 ? 0 : still + 1;
+    }
+    const char* reason = app.options.gpu ? app.renderer.hostReason(0) : nullptr;
+    if (status.ok() && reason) return bake::systemError(fmt::format("--gpu: not on this device: {}", reason));
+    return status;
 }
 
 bake::Status run(App& app) {
@@ -205,9 +229,7 @@ bake::Status run(App& app) {
     std::filesystem::create_directories(app.options.output, error);
     if (error) return bake::systemError(fmt::format("{}: {}", app.options.output.string(), error.message()));
     uint64_t ticket = 0;
-    do { // assets arrive in pieces
-        status = fromRuntime(drawFrame(app, 0, ticket));
-    } while (status.ok() && app.renderer.stats().uploadBytes > 0);
+    status = settle(app, ticket);
     for (uint32_t frame = 0; status.ok() && frame < app.options.frames; ++frame) {
         status = fromRuntime(drawFrame(app, 0.3f + float(frame) / 30, ticket));
         if (status.ok()) status = writeFrame(app, ticket, frame);
@@ -235,6 +257,8 @@ int main(int argc, char** argv) {
     cli.add_option("--mode", o.mode, "How it is coloured")
         ->check(CLI::IsMember({"shaded", "parts", "levels", "wire"}))
         ->capture_default_str();
+    cli.add_flag("--gpu", o.gpu, "Chooses levels, culls and builds index lists and draws on the device");
+    cli.add_flag("--eye-shadows", o.eyeShadows, "What casts shadows takes its levels from the camera, as with --gpu");
     cli.add_flag("--still", o.still, "Draws at twice the size and halves the picture");
     CLI11_PARSE(cli, argc, argv);
     const bake::Status status = run(app);
