@@ -141,10 +141,15 @@ void write(GpuItem item, uvec2 list) {
     }
 }
 
-// Opaque draws, then those with an alpha test, which have a place of their own: the host knows where it begins.
+// Draws of each kind have a place of their own: the host knows where it begins.
 uint placeOf(uint number) {
-    const uint opaqueDraws = Totals(frame.totals).at.opaqueDraws;
-    return number < opaqueDraws ? number : frame.drawCapacity + number - opaqueDraws;
+    uint kind = 0;
+    for (; kind < kDrawKinds - 1; ++kind) {
+        const uint draws = Totals(frame.totals).at.kindDraws[kind];
+        if (number < draws) break;
+        number -= draws;
+    }
+    return kind * frame.drawCapacity + number;
 }
 
 void writeDraw(uint number, uint firstIndex, uint indexCount, uint instanceCount, DrawRecord record) {

@@ -11,7 +11,7 @@ layout(local_size_x = 256) in;
 shared uvec2 sums[kLanes];
 shared uvec2 carry;
 shared uint firstMissing; // item
-shared uint firstMasked;  // draw
+shared uint kindEnds[kDrawKinds]; // draws
 
 uvec2 valueAt(uint i) {
     if (push.step == 1) {
@@ -31,7 +31,9 @@ void put(uint i, uvec2 first, uvec2 count) {
         if (!fits) Items(frame.items).at[i].indexCount = 0;
         return;
     }
-    if (i == frame.firstMaskedRun) firstMasked = first.y;
+    for (uint kind = 0; kind < kDrawKinds - 1; ++kind) {
+        if (i == frame.kindRuns[kind]) kindEnds[kind] = first.y;
+    }
     if (i >= frame.runCount) return;
     const bool fits = first.x + count.x <= frame.itemCapacity && first.y + count.y <= frame.drawCapacity;
     if (!fits) atomicMin(firstMissing, i);
@@ -43,7 +45,8 @@ void main() {
     const uint end = push.step == 1 ? Totals(frame.totals).at.itemCount : frame.runCount;
     if (lane == 0) {
         carry = uvec2(0);
-        firstMissing = firstMasked = kNone;
+        firstMissing = kNone;
+        for (uint kind = 0; kind < kDrawKinds; ++kind) kindEnds[kind] = kNone;
     }
     barrier();
     for (uint base = 0; base < end; base += kLanes * kEach) {
@@ -79,8 +82,12 @@ void main() {
                                                        Places(frame.places).at[firstMissing].firstDraw);
     Totals(frame.totals).at.itemCount = listed.x;
     Totals(frame.totals).at.drawCount = listed.y;
-    Totals(frame.totals).at.opaqueDraws = min(firstMasked, listed.y);
-    Totals(frame.totals).at.maskedDraws = listed.y - min(firstMasked, listed.y);
+    uint done = 0;
+    for (uint kind = 0; kind < kDrawKinds; ++kind) {
+        const uint end = min(kindEnds[kind], listed.y);
+        Totals(frame.totals).at.kindDraws[kind] = end - done;
+        done = end;
+    }
     Totals(frame.totals).at.missingItems = firstMissing == kNone ? 0 : 1;
     Totals(frame.totals).at.groups[0] = min(listed.x, kGroupsPerRow);
     Totals(frame.totals).at.groups[1] = (listed.x + kGroupsPerRow - 1) / kGroupsPerRow;

@@ -18,6 +18,12 @@ XGC_CONST uint kWholeStates = 124;      ///< of an asset: xgc::kMaxWholeStates
 XGC_CONST uint kMaxPatchDomains = 1024; ///< of a patch that compute shaders can draw
 XGC_CONST uint kGroupsPerRow = 32768;   ///< of a dispatch: large ones are this wide and several high
 
+/// Draws are of a kind each, by the pipelines that draw them: kDrawPosable for assets that can be posed, kDrawMasked
+/// for alpha-tested materials, both or none.
+XGC_CONST uint kDrawPosable = 1;
+XGC_CONST uint kDrawMasked = 2;
+XGC_CONST uint kDrawKinds = 4;
+
 /// A patch of an asset.
 struct GpuPatch {
     vec4 sphere; ///< mesh space
@@ -112,7 +118,7 @@ struct GpuControl {
 };
 
 /// Patches of one material of what is drawn as one: a whole state of an asset (asset * kWholeStates + state), or an
-/// instance (GpuFrame::stateCapacity + id). In the order of the draws: opaque materials first.
+/// instance (GpuFrame::stateCapacity + id). In the order of the draws: by kind, then by material.
 struct GpuRun {
     uint subject;
     uint asset;
@@ -166,12 +172,11 @@ struct GpuTotals {
     uint drawCount;
     uint itemCount;
     uint indexCount;
-    uint missingItems;   ///< not 0: items or draws did not fit
-    uint missingIndices; ///< not 0: indices did not fit
-    uint triangles;      ///< of all instances, modulo 2^32
-    uint opaqueDraws;    ///< of drawCount: they begin the commands
-    uint maskedDraws;    ///< the rest: theirs begin at GpuFrame::drawCapacity
-    uint reserved0;
+    uint missingItems;          ///< not 0: items or draws did not fit
+    uint missingIndices;        ///< not 0: indices did not fit
+    uint triangles;             ///< of all instances, modulo 2^32
+    uint kindDraws[kDrawKinds]; ///< of drawCount: those of kind k begin at k * GpuFrame::drawCapacity
+    uint reserved0, reserved1, reserved2;
 };
 
 /// A frame of a view: everything is found from here.
@@ -194,7 +199,7 @@ struct GpuFrame {
     Address places;      ///< GpuRunPlace
     Address items;       ///< GpuItem
     Address totals;      ///< GpuTotals
-    Address commands;    ///< VkDrawIndexedIndirectCommand, twice drawCapacity
+    Address commands;    ///< VkDrawIndexedIndirectCommand, drawCapacity a kind
     Address draws;       ///< DrawRecord, likewise
     Address indices;     ///< uint
     uint instanceEnd;
@@ -222,8 +227,7 @@ struct GpuFrame {
     float loosePixels, middlePixels, tightPixels;
     float looseBand, middleBand, tightBand;
     float wholeInner, wholeOuter, beltInner; ///< radii
-    uint firstMaskedRun;                     ///< runs from here on are of alpha-tested materials
-    uint reserved0, reserved1;
+    uint kindRuns[kDrawKinds - 1];           ///< where the runs of kinds 1 and on begin
     // Of the second phase.
     mat4 worldToClip;
     Address depth; ///< float: the pyramid of what the first one drew

@@ -24,9 +24,15 @@ using namespace xgc::test;
 /// A frame's commands and draws, as bytes that can be compared.
 struct Draws {
     std::vector<uint32_t> ids;
-    // Of opaque materials, and of alpha-tested ones.
-    std::array<std::vector<DrawCommand>, 2> commands;
-    std::array<std::vector<shader::DrawRecord>, 2> records;
+    // A kind each.
+    std::array<std::vector<DrawCommand>, shader::kDrawKinds> commands;
+    std::array<std::vector<shader::DrawRecord>, shader::kDrawKinds> records;
+
+    size_t commandCount() const {
+        size_t count = 0;
+        for (const auto& kind : commands) count += kind.size();
+        return count;
+    }
     std::vector<uint32_t> indices;
 };
 
@@ -36,8 +42,8 @@ void append(const AssetView& asset, uint32_t patch, Levels levels, std::vector<u
     to.insert(to.end(), out.begin(), out.end());
 }
 
-/// What a selection draws, made here: opaque materials first, then by material, whole states before mixed instances,
-/// each by its number.
+/// What a selection draws, made here: by kind, then by material, whole states before mixed instances, each by its
+/// number.
 class HostDraws {
 public:
     HostDraws(const Scene& scene, const Selection& selection, std::span<const std::vector<uint8_t>> partColors)
@@ -53,8 +59,8 @@ public:
         for (const uint32_t state : states) placeState(state);
         firstMixed_ = uint32_t(out.ids.size());
         out.ids.insert(out.ids.end(), mixed_.begin(), mixed_.end());
-        for (uint32_t i = 0; i < 2 * kMaterials; ++i) {
-            const Kind kind{i % kMaterials, i >= kMaterials};
+        for (uint32_t i = 0; i < shader::kDrawKinds * kMaterials; ++i) {
+            const Kind kind{i % kMaterials, i / kMaterials};
             for (size_t s = 0; s < states.size(); ++s) drawState(states[s], placed_[s], kind);
             for (size_t m = 0; m < mixed_.size(); ++m) drawMixed(mixed_[m], firstMixed_ + uint32_t(m), kind);
         }
@@ -66,16 +72,16 @@ public:
 private:
     static constexpr uint32_t kMaterials = 16;
     struct Kind {
-        uint32_t material;
-        bool masked;
+        uint32_t material, number;
     };
     struct Placed {
         uint32_t first, count;
     };
     static bool isOf(const AssetDesc& desc, uint32_t patch, const Kind& kind) {
         const uint32_t own = desc.asset->patches[patch].material;
-        const bool masked = (desc.asset->materials[own].flags & format::kAlphaMask) != 0;
-        return desc.firstMaterial + own == kind.material && masked == kind.masked;
+        const uint32_t masked = desc.asset->materials[own].flags & format::kAlphaMask ? shader::kDrawMasked : 0;
+        const uint32_t posable = desc.asset->joints.empty() ? 0 : shader::kDrawPosable;
+        return desc.firstMaterial + own == kind.material && (masked | posable) == kind.number;
     }
 
     uint32_t stateOf(uint32_t id) const {
@@ -94,8 +100,8 @@ private:
         const auto count = uint32_t(out.indices.size()) - firstIndex;
         record.firstInstance = placed.first;
         record.indexBytes = 4;
-        out.commands[kind.masked].push_back({count, placed.count, firstIndex, 0, placed.first});
-        out.records[kind.masked].push_back(record);
+        out.commands[kind.number].push_back({count, placed.count, firstIndex, 0, placed.first});
+        out.records[kind.number].push_back(record);
         triangles += uint64_t(count / 3) * placed.count;
     }
     void drawState(uint32_t state, const Placed& placed, const Kind& kind) {
@@ -157,7 +163,7 @@ public:
     std::vector<std::vector<uint8_t>> partColors;
 
     explicit Twins(const Gpu& gpu) : gpu_(gpu) {
-        config.assetCapacity = 4;
+        config.assetCapacity = 5;
         config.instanceCapacity = 300;
         config.assetPatchCapacity = 4096;
         config.patchCapacity = 16384;
@@ -171,7 +177,7 @@ public:
         XGC_REQUIRE_OK(pipelines_.create(gpu.context));
         XGC_REQUIRE_OK(gpuScene_.create(gpu.context, config));
         XGC_REQUIRE_OK(view_.create(gpu.context, config, gpuScene_.stateCapacity()));
-        madeBytes_ = view_.lists().draws + 2 * config.gpu.drawCapacity * sizeof(shader::DrawRecord);
+        madeBytes_ = view_.lists().draws + shader::kDrawKinds * config.gpu.drawCapacity * sizeof(shader::DrawRecord);
         XGC_REQUIRE_OK(back_.create(gpu.context, madeBytes_ + config.gpu.indexBytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                                     vulkan::Residence::download));
         XGC_REQUIRE_OK(offscreen_.create(gpu.context, gpu.device.queue(), singleSampled(4, 4)));
@@ -249,15 +255,15 @@ public:
         const auto& totals = *at<shader::GpuTotals>(view_.lists().totals);
         CHECK(totals.missingItems == 0);
         CHECK(totals.missingIndices == 0);
-        REQUIRE(totals.drawCount == expected.commands[0].size() + expected.commands[1].size());
+        REQUIRE(totals.drawCount == expected.commandCount());
         REQUIRE(totals.indexCount == expected.indices.size());
         CHECK(same(expected.ids, view_.lists().ids));
         CHECK(same(expected.indices, madeBytes_));
-        for (const bool masked : {false, true}) {
-            const vulkan::GpuView::DrawRange range = view_.drawRange(false, masked);
-            REQUIRE(*at<uint32_t>(range.count) == expected.commands[masked].size());
-            CHECK(same(expected.commands[masked], range.command));
-            CHECK(same(expected.records[masked], view_.lists().draws + range.first * sizeof(shader::DrawRecord)));
+        for (uint32_t kind = 0; kind < shader::kDrawKinds; ++kind) {
+            const vulkan::GpuView::DrawRange range = view_.drawRange(false, kind);
+            REQUIRE(*at<uint32_t>(range.count) == expected.commands[kind].size());
+            CHECK(same(expected.commands[kind], range.command));
+            CHECK(same(expected.records[kind], view_.lists().draws + range.first * sizeof(shader::DrawRecord)));
         }
     }
     template <typename T>
@@ -314,7 +320,8 @@ struct Assets {
     OpenAsset large = openBuilt(patchedTorus({.patches = 4, .levels = 3, .materials = 3, .repeatedLevels = 1}));
     BakedModel baked{bake::BundledModel::creature, 6000, 150};
     PosedModel tube{tubeModel({24, 60}), 128};
-    std::vector<format::MaterialRecord> materials;
+    std::vector<format::MaterialRecord> materials, tubeMaterials;
+    AssetView maskedTube = tube.view;
     Assets() {
         REQUIRE(small.failure == "");
         REQUIRE(large.failure == "");
@@ -323,6 +330,9 @@ struct Assets {
         materials.assign(large.view.materials.begin(), large.view.materials.end());
         materials[1].flags = format::kAlphaMask;
         large.view.materials = materials;
+        tubeMaterials = {tube.view.materials[0]};
+        tubeMaterials[0].flags = format::kAlphaMask;
+        maskedTube.materials = tubeMaterials;
     }
 };
 
@@ -357,19 +367,21 @@ TEST_CASE("the device chooses, builds and lists what the host does, bit for bit,
     const Assets assets;
     Twins twins(gpu);
     const uint32_t ids[] = {twins.add(assets.small.view, 1), twins.add(assets.large.view, 0),
-                            twins.add(assets.baked.view, 5), twins.add(assets.tube.view, 4)};
+                            twins.add(assets.baked.view, 5), twins.add(assets.tube.view, 4),
+                            twins.add(assets.maskedTube, 8)};
     Random random(1);
     for (int i = 0; i < 200; ++i) {
-        twins.place(ids[i % 4], random.placement(i < 50 ? 6.0f : 90.0f));
-        if (i % 8 == 3) repose(twins, random, uint32_t(i));
+        twins.place(ids[i % 5], random.placement(i < 50 ? 6.0f : 90.0f));
+        if (i % 5 > 2 && i % 2 == 0) repose(twins, random, uint32_t(i));
     }
     const std::vector<float> bands = {0.5f, 1, 2, 4, 8, 9, 10, 11, 12};
-    uint64_t wholes = 0, mixed = 0, culled = 0, posed = 0, masked = 0;
+    uint64_t wholes = 0, mixed = 0, culled = 0, posed = 0;
+    std::array<uint64_t, shader::kDrawKinds> draws{};
     for (int i = 0; i < 40; ++i) {
         for (int change = 0; change < 9; ++change) {
             const uint32_t id = random.below(200);
             if (!twins.scene.hasInstance(id)) {
-                twins.place(ids[random.below(4)], random.placement(20));
+                twins.place(ids[random.below(5)], random.placement(20));
             } else if (change == 0) {
                 twins.remove(id);
             } else if (change == 1) {
@@ -393,13 +405,13 @@ TEST_CASE("the device chooses, builds and lists what the host does, bit for bit,
         wholes += twins.selection.stats().wholeInstances;
         mixed += twins.selection.stats().consideredPatches;
         culled += twins.selection.stats().culledPatches;
-        masked += host.out.commands[1].size();
+        for (size_t kind = 0; kind < draws.size(); ++kind) draws[kind] += host.out.commands[kind].size();
     }
     CHECK(wholes > 500);
     CHECK(mixed > 10000);
     CHECK(culled > 2000);
     CHECK(posed > 500);
-    CHECK(masked > 500);
+    for (const uint64_t count : draws) CHECK(count > 500);
 }
 
 TEST_CASE("the device draws the triangles that the cached draw list draws") {

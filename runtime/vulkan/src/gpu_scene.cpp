@@ -182,13 +182,15 @@ void GpuScene::orderPatches(const Scene& scene, uint32_t id, std::vector<uint32_
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(),
                      [&](uint32_t a, uint32_t b) { return patches[a].material < patches[b].material; });
+    const bool posable = !desc.asset->joints.empty() || !desc.asset->morphTargets.empty(); // as AssetStore::kindOf
     std::vector<Group>& groups = assets_[id].groups;
     groups.clear();
     for (uint32_t i = 0; i < order.size(); ++i) {
         const uint32_t material = patches[order[i]].material;
         const bool masked = (desc.asset->materials[material].flags & format::kAlphaMask) != 0;
-        const uint32_t kind = (desc.firstMaterial + material) | (masked ? kMasked : 0);
-        if (groups.empty() || groups.back().kind != kind) groups.push_back({kind, i, 0});
+        const uint32_t kind = (masked ? shader::kDrawMasked : 0) | (posable ? shader::kDrawPosable : 0);
+        const uint32_t rank = (kind << kKindBit) + desc.firstMaterial + material;
+        if (groups.empty() || groups.back().rank != rank) groups.push_back({rank, i, 0});
         ++groups.back().count;
     }
 }
@@ -270,11 +272,11 @@ void GpuScene::removeInstance(const Scene& scene, uint32_t id) {
     instances_[id].flags = 0;
 }
 
-/// By kind, then states before instances, by id: the order of the draws.
+/// By kind and material, then states before instances, by id: the order of the draws.
 void GpuScene::listRuns(const Scene& scene) {
     runs_.clear();
     const auto add = [&](uint32_t subject, uint32_t asset) {
-        for (const Group& g : assets_[asset].groups) runs_.push_back({g.kind, {subject, asset, g.first, g.count}});
+        for (const Group& g : assets_[asset].groups) runs_.push_back({g.rank, {subject, asset, g.first, g.count}});
     };
     for (uint32_t asset = 0; asset < assetEnd_; ++asset) {
         if (assets_[asset].instances == 0) continue;
@@ -286,8 +288,11 @@ void GpuScene::listRuns(const Scene& scene) {
     std::sort(runs_.begin(), runs_.end(), [](const auto& a, const auto& b) {
         return a.first != b.first ? a.first < b.first : a.second.subject < b.second.subject;
     });
-    const auto masked = std::find_if(runs_.begin(), runs_.end(), [](const auto& run) { return run.first >= kMasked; });
-    firstMaskedRun_ = uint32_t(masked - runs_.begin());
+    for (uint32_t kind = 1; kind < shader::kDrawKinds; ++kind) {
+        const auto first =
+            std::find_if(runs_.begin(), runs_.end(), [&](const auto& run) { return run.first >= kind << kKindBit; });
+        kindRuns_[kind - 1] = uint32_t(first - runs_.begin());
+    }
     ++runsVersion_;
     runsStale_ = false;
 }
@@ -354,7 +359,7 @@ void GpuScene::address(shader::GpuFrame& frame) const {
     frame.assetEnd = assetEnd_;
     frame.stateCapacity = stateCapacity();
     frame.runCount = uint32_t(runs_.size());
-    frame.firstMaskedRun = firstMaskedRun_;
+    std::copy(kindRuns_.begin(), kindRuns_.end(), frame.kindRuns);
 }
 
 } // namespace xgc::vulkan

@@ -5,6 +5,7 @@
 
 #include <xgc/scene.h>
 
+#include <array>
 #include <vector>
 
 namespace xgc::vulkan {
@@ -38,10 +39,10 @@ public:
 private:
     /// Patches of a material, as runs of an asset's order.
     struct Group {
-        uint32_t kind; ///< its number, and kMasked where it has an alpha test: opaque ones are drawn first
+        uint32_t rank; ///< in the order of draws: kDraw... in the highest bits, then the material's number
         uint32_t first, count;
     };
-    static constexpr uint32_t kMasked = 1u << 31;
+    static constexpr uint32_t kKindBit = 30;
     struct Asset {
         shader::GpuAsset record{};
         RangeList::Range bytes;
@@ -72,9 +73,9 @@ private:
     std::vector<shader::GpuInstance> instances_; ///< by id
     uint32_t instanceEnd_ = 0;
     uint32_t runsNeeded_ = 0;
-    std::vector<std::pair<uint32_t, shader::GpuRun>> runs_; ///< with their Group::kind, in the order of the draws
-    uint32_t firstMaskedRun_ = 0;
-    uint64_t runsVersion_ = 1; ///< rises with them
+    std::vector<std::pair<uint32_t, shader::GpuRun>> runs_;   ///< with their ranks, in the order of the draws
+    std::array<uint32_t, shader::kDrawKinds - 1> kindRuns_{}; ///< where those of kinds 1 and on begin
+    uint64_t runsVersion_ = 1;                                ///< rises with them
     bool runsStale_ = false;
     std::vector<uint64_t> writtenRuns_; ///< version in each part
 };

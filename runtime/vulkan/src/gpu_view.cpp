@@ -109,8 +109,8 @@ GpuView::Lists placeLists(const RendererConfig& config, uint32_t stateCapacity, 
     at.places = places.take(config.gpu.runCapacity * sizeof(shader::GpuRunPlace));
     at.items = places.take(config.gpu.drawCapacity * sizeof(shader::GpuItem));
     at.totals = places.take(sizeof(shader::GpuTotals));
-    at.commands = places.take(2 * config.gpu.drawCapacity * sizeof(DrawCommand));
-    at.draws = places.take(2 * config.gpu.drawCapacity * sizeof(shader::DrawRecord));
+    at.commands = places.take(shader::kDrawKinds * config.gpu.drawCapacity * sizeof(DrawCommand));
+    at.draws = places.take(shader::kDrawKinds * config.gpu.drawCapacity * sizeof(shader::DrawRecord));
     return at;
 }
 
@@ -182,12 +182,16 @@ void GpuView::point(shader::GpuFrame& frame, bool late) const {
     frame.indices = indices_[late].address();
 }
 
-GpuView::DrawRange GpuView::drawRange(bool late, bool masked) const {
+GpuView::DrawRange GpuView::drawRange(bool late, uint32_t kind) const {
     const Lists& lists = lists_[late];
-    const uint32_t first = masked ? drawCapacity_ : 0;
+    const uint32_t first = kind * drawCapacity_;
     return {first, lists.commands + first * sizeof(DrawCommand),
-            lists.totals +
-                (masked ? offsetof(shader::GpuTotals, maskedDraws) : offsetof(shader::GpuTotals, opaqueDraws))};
+            lists.totals + offsetof(shader::GpuTotals, kindDraws) + kind * sizeof(uint32_t)};
+}
+
+bool GpuView::hasKind(uint32_t kind) const {
+    const uint32_t first = kind == 0 ? 0 : asked_.kindRuns[kind - 1];
+    return first < (kind + 1 < shader::kDrawKinds ? asked_.kindRuns[kind] : runCount_);
 }
 
 // A frame -----------------------------------------------------------------------------------------------------------

@@ -69,14 +69,14 @@ public:
     const Buffer& indices(bool late = false) const { return indices_[late]; }
     VkDeviceSize slotsOffset() const { return slotsAt_; } ///< the states of instances begin the buffer
     uint32_t drawCapacity() const { return drawCapacity_; }
-    /// Of one kind: those of opaque materials begin `commands` and `draws`, those of alpha-tested ones begin at
-    /// drawCapacity().
+    /// Draws of one kind (shader::kDraw...).
     struct DrawRange {
-        uint32_t first;
+        uint32_t first;              ///< in `draws`
         VkDeviceSize command, count; ///< offsets in buffer()
     };
-    DrawRange drawRange(bool late, bool masked) const;
-    bool hasMasked() const { return asked_.firstMaskedRun < runCount_; }
+    DrawRange drawRange(bool late, uint32_t kind) const;
+    /// Something of this kind may be drawn.
+    bool hasKind(uint32_t kind) const;
 
 private:
     struct Dispatch {

@@ -273,7 +273,6 @@ Status Renderer::setPose(InstanceHandle handle, const Pose& pose) {
         for (int row = 0; row < 3; ++row) rows[size_t(row)] = {m[0][row], m[1][row], m[2][row], m[3][row]};
     }
     std::copy(pose.morphWeights.begin(), pose.morphWeights.end(), self.weights.begin() + instance->weights.first);
-    self.poseCount += !std::exchange(instance->posed, true);
     instance->skinned = joints > 0;
     instance->displaced = weights > 0 && !asset.morphDeltas.empty();
     return {};
@@ -282,7 +281,6 @@ Status Renderer::setPose(InstanceHandle handle, const Pose& pose) {
 void Renderer::Impl::releasePose(StoredInstance& instance) {
     jointRanges.free(std::exchange(instance.joints, {}));
     weightRanges.free(std::exchange(instance.weights, {}));
-    poseCount -= std::exchange(instance.posed, false);
     instance.skinned = instance.displaced = false;
 }
 

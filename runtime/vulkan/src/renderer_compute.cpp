@@ -38,7 +38,6 @@ const char* Renderer::Impl::hostReason(uint32_t view, const SelectionDesc& desc)
 }
 
 void Renderer::Impl::writeGpu() {
-    anyPosed = poseCount > 0;
     bool written = false;
     for (StoredView& view : views) {
         if (!view.onDevice()) continue;
@@ -57,13 +56,14 @@ void Renderer::Impl::recordGpuDraws(VkCommandBuffer cmd, const GpuDraws& what, s
     push.lambdaOffsets = push.lambdas = 0;
     if (what.indexed) vk.vkCmdBindIndexBuffer(cmd, gpu.indices(what.late).handle(), 0, VK_INDEX_TYPE_UINT32);
     const auto draw = what.indexed ? vk.vkCmdDrawIndexedIndirectCount : vk.vkCmdDrawIndirectCount; // as recordBatches
-    for (const bool masked : {false, true}) {
-        if (masked && !gpu.hasMasked()) break;
-        const GpuView::DrawRange range = gpu.drawRange(what.late, masked);
+    for (uint32_t kind = 0; kind < shader::kDrawKinds; ++kind) {
+        if (!gpu.hasKind(kind)) continue;
+        const Pipelines::Pair& pair = kind & shader::kDrawMasked ? what.masked : what.opaque;
+        const GpuView::DrawRange range = gpu.drawRange(what.late, kind);
         push.firstDraw = range.first;
         vk.vkCmdPushConstants(cmd, pipelines.layout(), VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                               sizeof(push), &push);
-        vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, (masked ? what.masked : what.opaque)[anyPosed]);
+        vk.vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pair[kind & shader::kDrawPosable]);
         draw(cmd, gpu.buffer(), range.command, gpu.buffer(), range.count, gpu.drawCapacity(), sizeof(DrawCommand));
     }
 }

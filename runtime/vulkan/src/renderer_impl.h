@@ -35,7 +35,7 @@ struct StoredInstance {
     bool visible = true; ///< the host's wish; it is while its asset is resident
     // Of its pose, in the renderer's lists.
     RangeList::Range joints{}, weights{};
-    bool posed = false, skinned = false, displaced = false;
+    bool skinned = false, displaced = false;
 };
 
 /// A view with levels of its own.
@@ -74,8 +74,6 @@ struct Renderer::Impl {
     RangeList jointRanges, weightRanges;
     std::vector<JointRows> joints; ///< of all poses
     std::vector<float> weights;    ///< of targets, likewise
-    uint32_t poseCount = 0;        ///< instances with a pose
-    bool anyPosed = false;         ///< of the frame that was ended
 
     uint64_t frame = 0;
     VkDeviceSize indexStagingOffset = 0;
