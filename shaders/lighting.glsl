@@ -147,8 +147,11 @@ Surface surfaceOf(DrawRecord draw, ViewRecord view) {
     return Surface(0.80 * m.baseColor.rgb * inColor.rgb, m.emissive.rgb, m.metallic, m.roughness);
 }
 
-// What a host points at: warm, and still lit.
-Surface highlight(Surface s) {
+// What a host points at: warm, still lit, and aglow where it turns away, so that it shows among warm neighbours, too.
+Surface highlight(Surface s, ViewRecord view) {
     const vec3 warm = fromSrgb(0xFF8A1Fu);
-    return Surface(mix(s.albedo, warm, 0.50 * inMarks.y), s.emissive + 0.08 * inMarks.y * warm, s.metallic, s.roughness);
+    const vec3 toEye = normalize(view.eye.xyz - inPosition);
+    const float edge = 1.0 - max(dot(seenNormal(toEye), toEye), 0.0);
+    const float glow = inMarks.y * (0.08 + 0.9 * edge * edge);
+    return Surface(mix(s.albedo, warm, 0.50 * inMarks.y), s.emissive + glow * warm, s.metallic, s.roughness);
 }

@@ -9,5 +9,5 @@ layout(location = 0) out vec4 outTarget;
 void main() {
     const ViewRecord view = Views(push.view).at;
     const DrawRecord draw = Draws(push.draws).at[inDraw];
-    outTarget = vec4(light(highlight(surfaceOf(draw, view)), view), 1);
+    outTarget = vec4(light(highlight(surfaceOf(draw, view), view), view), 1);
 }

@@ -11,5 +11,5 @@ void main() {
     const ViewRecord view = Views(push.view).at;
     const DrawRecord draw = Draws(push.draws).at[inDraw];
     discardBelowCutoff(draw.material, inColor.a);
-    outTarget = vec4(light(highlight(surfaceOf(draw, view)), view), 1);
+    outTarget = vec4(light(highlight(surfaceOf(draw, view), view), view), 1);
 }

@@ -25,5 +25,5 @@ float edgeInk(float linePixels) {
 void main() {
     const ViewRecord view = Views(push.view).at;
     const DrawRecord draw = Draws(push.draws).at[inDraw];
-    outTarget = vec4(mix(light(highlight(surfaceOf(draw, view)), view), kInk, edgeInk(view.linePixels)), 1);
+    outTarget = vec4(mix(light(highlight(surfaceOf(draw, view), view), view), kInk, edgeInk(view.linePixels)), 1);
 }

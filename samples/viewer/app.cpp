@@ -14,6 +14,7 @@ namespace xgc::viewer {
 namespace {
 
 constexpr float kFixedSeconds = 1.0f / 60;
+constexpr float kNoticeSeconds = 3;
 constexpr auto kDoubleClick = std::chrono::milliseconds(350);
 
 } // namespace
@@ -147,6 +148,7 @@ void App::pickAt(const glm::vec2& pixel) {
     state_.selected.reset();
     if (!hit) return;
     state_.selected = PartName{hit->asset, hit->part};
+    state_.showPickedRow = true;
     const Clock::time_point now = Clock::now();
     state_.askFocus |= now - lastPick_ < kDoubleClick && !fixedClock();
     lastPick_ = now;
@@ -195,6 +197,20 @@ void App::updateTitle() {
     window_.setTitle(title_.c_str());
 }
 
+/// Of the last frame, under a name that is free.
+void App::writePicture() {
+    std::string file;
+    for (uint32_t i = 1; file.empty() || std::filesystem::exists(file); ++i)
+        file = fmt::format("xgc-viewer-{:03}.png", i);
+    const bake::Status status = bake::writePng(presenter_.canvas().picture(), file);
+    if (!status.ok()) {
+        state_.errors.push_back(status.message);
+        return;
+    }
+    state_.notice = "wrote " + file;
+    state_.noticeSeconds = kNoticeSeconds;
+}
+
 /// What keys and panel asked for.
 void App::act() {
     if (state_.askPick) pickAt(*state_.askPick);
@@ -235,6 +251,7 @@ bake::Status App::step(bool& running) {
     const float seconds = fixedClock() ? kFixedSeconds : milliseconds(now - lastFrame_) / 1000;
     frameMs_ = fixedClock() ? 1000 * kFixedSeconds : milliseconds(now - lastFrame_);
     lastFrame_ = now;
+    state_.noticeSeconds -= seconds;
     controls_.advance(state_, seconds);
     act();
     updateTitle();
@@ -244,11 +261,7 @@ bake::Status App::step(bool& running) {
     buildInterface(seconds);
     const bool capture = state_.askScreenshot || (last && !options_.screenshot.empty());
     status = drawFrame(capture);
-    if (status.ok() && state_.askScreenshot) {
-        status = bake::writePng(presenter_.canvas().picture(), fmt::format("xgc-viewer-{:03}.png", ++pictures_));
-        if (!status.ok()) state_.errors.push_back(status.message);
-        status = {};
-    }
+    if (status.ok() && state_.askScreenshot) writePicture();
     state_.askScreenshot = false;
     return status;
 }

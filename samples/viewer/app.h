@@ -38,6 +38,7 @@ private:
     void pickAt(const glm::vec2& pixel);
     void freeze();
     void updateTitle();
+    void writePicture();
     bake::Status finish();
 
     // A frame.
@@ -69,7 +70,6 @@ private:
     Selection uniformLevels_;     ///< holds its levels for the renderer
     uint32_t frames_ = 0;         ///< counted from when all files are there
     uint32_t sinceRebuild_ = 0;   ///< frames
-    uint32_t pictures_ = 0;       ///< that F12 wrote
     std::string title_;
     Clock::time_point lastPick_{};
     Clock::time_point lastFrame_{};

@@ -30,8 +30,8 @@ void App::buildInterface(float seconds) {
     presenter_.interface().begin(presenter_.canvas().size(), seconds);
     const LoadProgress progress = loader_.progress();
     if (view.x > 0) buildPanel(state_, models_, drawn_, view.x, view.height);
-    buildOverlay(state_, models_.all().empty() && !progress.busy, view);
-    buildDialogs(state_, progress, view);
+    buildOverlay(state_, models_.all().empty(), view);
+    buildDialogs(state_, progress, models_.all().empty(), view);
     presenter_.interface().end();
 }
 

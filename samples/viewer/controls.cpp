@@ -130,6 +130,7 @@ void Controls::key(int code, ViewerState& state) const {
         state.showPanel = !state.showPanel;
         break;
     case kKeyF1:
+    case kKeySlash: // where ? is
         state.showHelp = !state.showHelp;
         break;
     case kKeyF12:

@@ -11,6 +11,20 @@ constexpr ImGuiWindowFlags kCardFlags = ImGuiWindowFlags_NoDecoration | ImGuiWin
                                         ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove |
                                         ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing;
 
+/// What to do first.
+void buildWelcome(ViewerState& state, const Area& area) {
+    ImGui::SetNextWindowPos({area.x + 0.5f * area.width, area.y + 0.46f * area.height}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::Begin("welcome", nullptr, kCardFlags);
+    ImGui::TextUnformatted("Drop an .xgc file or a model here,");
+    ImGui::TextUnformatted("or begin with a bundled one:");
+    ImGui::Dummy({0, 2});
+    for (const char* name : kBundledNames) {
+        if (name != kBundledNames[0]) ImGui::SameLine();
+        if (ImGui::Button(name)) state.askOpen = name;
+    }
+    ImGui::End();
+}
+
 void buildProgress(ViewerState& state, const LoadProgress& progress, const Area& area) {
     if (!progress.busy) return;
     ImGui::SetNextWindowPos({area.x + 0.5f * area.width, area.y + 0.62f * area.height}, ImGuiCond_Always, {0.5f, 0.5f});
@@ -30,7 +44,7 @@ void buildProgress(ViewerState& state, const LoadProgress& progress, const Area&
 
 void buildErrors(ViewerState& state) {
     if (state.errors.empty()) return;
-    constexpr const char* kTitle = "This file cannot be shown";
+    constexpr const char* kTitle = "This did not work";
     if (!ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
     const ImVec2 middle = ImGui::GetMainViewport()->GetCenter();
     ImGui::SetNextWindowPos(middle, ImGuiCond_Always, {0.5f, 0.5f});
@@ -40,9 +54,14 @@ void buildErrors(ViewerState& state) {
     ImGui::PopTextWrapPos();
     ImGui::Dummy({0, 4});
     const bool closed = ImGui::Button("Close", {7 * ImGui::GetFontSize(), 0}) ||
-                        ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter));
+                        ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter)) ||
+                        ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
     ImGui::SameLine();
     if (ImGui::Button("Copy", {7 * ImGui::GetFontSize(), 0})) ImGui::SetClipboardText(state.errors.front().c_str());
+    if (state.errors.size() > 1) {
+        ImGui::SameLine();
+        ImGui::TextDisabled("and %d more", int(state.errors.size() - 1));
+    }
     if (closed) {
         state.errors.erase(state.errors.begin());
         ImGui::CloseCurrentPopup();
@@ -60,19 +79,24 @@ void buildHelp(ViewerState& state, const Area& area) {
         {"W A S D Q E", "fly; shift: faster"},
         {"click, double click", "pick a part, look at it"},
         {"1 2 3 4 5", "shaded, parts, levels, wire, error"},
-        {"[ ]", "half, double the pixels"},
+        {"[ ]", "half, double the error"},
         {"B, M, X, V", "budget, morph, freeze, split"},
         {"H, P, R", "hide, pin, reset the picked part"},
         {"U, shift + R", "show all parts, reset all"},
         {"F, C", "look at everything, at the picked part"},
         {"Z", "up is y, or z"},
-        {"Tab, G, F1", "panel, graphs, these keys"},
+        {"Tab, G, F1 or ?", "panel, graphs, these keys"},
         {"F12", "write a screenshot"},
         {"Escape, control + Q", "let go, leave"},
     };
-    ImGui::SetNextWindowPos({area.x + 0.5f * area.width, area.y + 0.5f * area.height}, ImGuiCond_Always, {0.5f, 0.5f});
-    ImGui::Begin("keys", nullptr, kCardFlags);
-    ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kAccent), "Keys");
+    const bool fits = area.width > 32 * ImGui::GetFontSize(); // else over the panel, too
+    ImGui::SetNextWindowPos({0.5f * (fits ? 2 * area.x + area.width : area.x + area.width), 0.5f * area.height},
+                            ImGuiCond_Always, {0.5f, 0.5f});
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowSizeConstraints({0, 0}, {screen.x - 20, screen.y - 20});
+    ImGui::Begin("keys", nullptr, kCardFlags & ~ImGuiWindowFlags_NoScrollbar);
+    ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kAccent), "Mouse and keys");
+    ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {10, 3});
     if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) {
         for (const auto& [key, what] : kKeys) {
             ImGui::TableNextColumn();
@@ -82,12 +106,14 @@ void buildHelp(ViewerState& state, const Area& area) {
         }
         ImGui::EndTable();
     }
+    ImGui::PopStyleVar();
     ImGui::End();
 }
 
 } // namespace
 
-void buildDialogs(ViewerState& state, const LoadProgress& progress, const Area& area) {
+void buildDialogs(ViewerState& state, const LoadProgress& progress, bool empty, const Area& area) {
+    if (empty && !progress.busy && state.errors.empty()) buildWelcome(state, area);
     buildProgress(state, progress, area);
     buildHelp(state, area);
     buildErrors(state);

@@ -8,6 +8,7 @@ namespace xgc::viewer {
 /// Keys by GLFW's numbers: letters and digits are their upper-case ASCII.
 enum Key : int {
     kKeySpace = 32,
+    kKeySlash = 47,
     kKeyEscape = 256,
     kKeyEnter = 257,
     kKeyTab = 258,

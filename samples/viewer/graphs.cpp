@@ -46,12 +46,12 @@ void graph(ImDrawList& list, const ImVec2& at, const ImVec2& size, const Look& l
 
 } // namespace
 
-void buildGraphs(const ViewerState& state, const Area& area) {
+float buildGraphs(const ViewerState& state, const Area& area) {
     const float unit = smallFont()->FontSize;
-    const ImVec2 size{18 * unit, 3.4f * unit};
+    const ImVec2 size{16 * unit, 3 * unit};
     const float pad = 0.9f * unit, gap = 0.7f * unit;
     const ImVec2 card{size.x + 2 * pad, 4 * size.y + 3 * gap + 2 * pad};
-    if (area.width < 2 * card.x || area.height < 1.3f * card.y) return;
+    if (area.width < 2 * card.x || area.height < 1.3f * card.y) return 0;
     const ImVec2 low{area.x + area.width - card.x - unit, area.y + area.height - card.y - unit};
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     list.AddRectFilled(low, {low.x + card.x, low.y + card.y}, kCard, 6);
@@ -66,8 +66,9 @@ void buildGraphs(const ViewerState& state, const Area& area) {
     graph(list, at, size, {"patches that changed level", IM_COL32(141, 191, 103, 255)}, m.changesHistory,
           grouped(uint64_t(m.changesHistory.latest())));
     next();
-    graph(list, at, size, {"frame; choosing levels", IM_COL32(154, 127, 196, 255)}, m.frameHistory,
+    graph(list, at, size, {"frame, selection", IM_COL32(154, 127, 196, 255)}, m.frameHistory,
           fmt::format("{:.1f} ms, {:.2f} ms", m.frameHistory.latest(), m.selectHistory.latest()));
+    return card.x + unit;
 }
 
 } // namespace xgc::viewer

@@ -14,13 +14,12 @@ namespace {
 constexpr uint32_t kBundledFaces = 60000;
 
 std::optional<bake::BundledModel> bundled(const std::string& name) {
-    constexpr std::pair<const char*, bake::BundledModel> kModels[] = {{"creature", bake::BundledModel::creature},
-                                                                      {"shaft", bake::BundledModel::shaft},
-                                                                      {"terrain", bake::BundledModel::terrain},
-                                                                      {"temple", bake::BundledModel::temple},
-                                                                      {"tree", bake::BundledModel::tree}};
-    for (const auto& [word, model] : kModels) {
-        if (name == word) return model;
+    constexpr bake::BundledModel kModels[] = {bake::BundledModel::creature, bake::BundledModel::shaft,
+                                              bake::BundledModel::terrain, bake::BundledModel::temple,
+                                              bake::BundledModel::tree};
+    static_assert(std::size(kModels) == std::size(kBundledNames));
+    for (size_t i = 0; i < std::size(kModels); ++i) {
+        if (name == kBundledNames[i]) return kModels[i];
     }
     return {};
 }

@@ -21,6 +21,9 @@ struct LoadedFile {
     bool baked = false; ///< here, from a model
 };
 
+/// What `Loader::request` makes where no file is called so.
+inline constexpr const char* kBundledNames[] = {"creature", "shaft", "terrain", "temple", "tree"};
+
 struct LoadProgress {
     bool busy = false;
     std::string name;

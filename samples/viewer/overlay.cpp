@@ -37,6 +37,26 @@ void drawFrustum(ImDrawList& list, const ViewerState& state, const Area& area) {
     draw(0.18f * distance, kAccent, 2);                    // the camera
 }
 
+/// What one side of a split view draws.
+struct Side {
+    const char* name;
+    uint64_t triangles;
+    float pixels;
+    ImU32 color;
+};
+
+/// In the middle between two places, in as many words as there is room for.
+void sideLabel(ImDrawList& list, float from, float to, float y, const Side& side) {
+    const std::string triangles = grouped(side.triangles), pixels = pixelsText(side.pixels);
+    for (const std::string& text : {fmt::format("{}:  {} triangles, error up to {}", side.name, triangles, pixels),
+                                    fmt::format("{}:  {} triangles, {}", side.name, triangles, pixels),
+                                    fmt::format("{} triangles, {}", triangles, pixels), triangles}) {
+        if (textSize(text).x + 40 > to - from) continue;
+        label(list, 0.5f * (from + to), y, text, side.color);
+        return;
+    }
+}
+
 void drawSplit(ImDrawList& list, const ViewerState& state, const Area& area) {
     const float x = area.x + area.width * state.splitAt, middle = area.y + 0.5f * area.height;
     list.AddLine({x, area.y}, {x, area.y + area.height}, IM_COL32(20, 20, 22, 160), 3);
@@ -45,25 +65,22 @@ void drawSplit(ImDrawList& list, const ViewerState& state, const Area& area) {
     list.AddTriangleFilled({x - 6, middle}, {x - 2, middle - 4}, {x - 2, middle + 4}, IM_COL32(40, 42, 46, 255));
     list.AddTriangleFilled({x + 6, middle}, {x + 2, middle - 4}, {x + 2, middle + 4}, IM_COL32(40, 42, 46, 255));
     const Measured& m = state.measured;
-    const auto words = [](const char* what, uint64_t triangles, float pixels) {
-        return fmt::format("{}:  {} triangles, error up to {}", what, grouped(triangles), pixelsText(pixels));
-    };
-    const std::string left = words("levels by part", m.triangles, m.worstPixels);
-    const std::string right = words("one error for all", m.uniformTriangles, m.uniformWorstPixels);
-    const float reachLeft = 0.5f * textSize(left).x + 22, reachRight = 0.5f * textSize(right).x + 22;
-    label(list, std::max(0.5f * (area.x + x), area.x + reachLeft), area.y + 14, left, kAccent);
-    label(list, std::min(0.5f * (x + area.x + area.width), area.x + area.width - reachRight),
-          area.y + (area.x + reachLeft * 2 > x || x + reachRight * 2 > area.x + area.width ? 50.0f : 14.0f), right);
+    sideLabel(list, area.x, x, area.y + 14, {"levels by part", m.triangles, m.worstPixels, kAccent});
+    sideLabel(list, x, area.x + area.width, area.y + 14,
+              {"one error for all", m.uniformTriangles, m.uniformWorstPixels, kInk});
 }
 
-void drawEmpty(ImDrawList& list, const Area& area) {
-    const float x = area.x + 0.5f * area.width, y = area.y + 0.46f * area.height;
-    const auto line = [&](float dy, const char* text, ImU32 color) {
-        list.AddText({x - 0.5f * ImGui::CalcTextSize(text).x, y + dy}, color, text);
-    };
-    line(0, "Drop an .xgc file or a model here", IM_COL32(40, 42, 46, 255));
-    line(1.6f * ImGui::GetFontSize(), "or press Open ... in the panel for the bundled ones",
-         IM_COL32(90, 94, 100, 255));
+/// What to do with the mouse, as far as there is room to say it.
+void drawHint(ImDrawList& list, const Area& area, float width) {
+    ImFont* font = smallFont();
+    const float size = font->FontSize;
+    for (const char* words : {"drag: orbit   shift-drag: pan   wheel: nearer   right-drag: look   WASD: fly   "
+                              "click: pick a part   F1: keys",
+                              "drag: orbit   wheel: nearer   F1: keys"}) {
+        if (font->CalcTextSizeA(size, 1e9f, 0, words).x + 28 > width) continue;
+        list.AddText(font, size, {area.x + 14, area.y + area.height - 1.9f * size}, IM_COL32(70, 74, 80, 255), words);
+        return;
+    }
 }
 
 } // namespace
@@ -71,19 +88,18 @@ void drawEmpty(ImDrawList& list, const Area& area) {
 void buildOverlay(const ViewerState& state, bool empty, const Area& area) {
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     list.PushClipRect({area.x, area.y}, {area.x + area.width, area.y + area.height});
-    if (empty) drawEmpty(list, area);
-    if (state.frozen) {
-        drawFrustum(list, state, area);
-        if (!state.split)
-            label(list, area.x + 0.5f * area.width, area.y + 14, "levels are frozen: X thaws them", kAccent);
+    if (!empty) {
+        if (state.frozen) drawFrustum(list, state, area);
+        if (state.split) drawSplit(list, state, area);
+        if (state.frozen) {
+            const float y = area.y + 14 + (state.split ? ImGui::GetFontSize() + 20 : 0);
+            label(list, area.x + 0.5f * area.width, y, "levels are frozen: X thaws them", kAccent);
+        }
     }
-    if (state.split && !empty) drawSplit(list, state, area);
-    if (state.showGraphs && !empty) buildGraphs(state, area);
-    ImFont* font = smallFont();
-    list.AddText(font, font->FontSize, {area.x + 14, area.y + area.height - 1.9f * font->FontSize},
-                 IM_COL32(70, 74, 80, 255),
-                 "drag: orbit   shift-drag: pan   wheel: nearer   right-drag: look   WASD: fly   click: pick a part   "
-                 "F1: keys");
+    const float graphs = !empty && state.showGraphs ? buildGraphs(state, area) : 0;
+    drawHint(list, area, area.width - graphs);
+    if (state.noticeSeconds > 0)
+        label(list, area.x + 0.5f * area.width, area.y + area.height - 4 * ImGui::GetFontSize(), state.notice);
     list.PopClipRect();
 }
 

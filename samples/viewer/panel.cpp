@@ -11,15 +11,15 @@
 namespace xgc::viewer {
 namespace {
 
-constexpr const char* kBundled[] = {"creature", "shaft", "terrain", "temple", "tree"};
-
 void buildOpen(ViewerState& state) {
     if (ImGui::Button("Open ...", {-1, 0})) ImGui::OpenPopup("open");
     tip("Open another model beside these. Files can be dropped into the window, too.");
+    ImGui::SetNextWindowPos({ImGui::GetItemRectMin().x, ImGui::GetItemRectMax().y + 4});
     if (!ImGui::BeginPopup("open")) return;
     static std::string path;
-    ImGui::TextUnformatted("A file (.xgc, or a model to bake)");
+    ImGui::TextUnformatted("A file: .xgc, or a model to bake (glTF, OBJ, PLY, ...)");
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 22);
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     bool open = ImGui::InputText("##path", &path, ImGuiInputTextFlags_EnterReturnsTrue);
     ImGui::SameLine();
     open |= ImGui::Button("Open");
@@ -28,9 +28,10 @@ void buildOpen(ViewerState& state) {
         ImGui::CloseCurrentPopup();
     }
     caption("OR A BUNDLED ONE");
-    for (const char* name : kBundled) {
+    for (const char* name : kBundledNames) {
         if (ImGui::Selectable(name)) state.askOpen = name;
     }
+    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
 }
 
@@ -45,11 +46,14 @@ void buildModels(ViewerState& state, const Models& models) {
         if (ImGui::SmallButton(" x ")) state.askClose = i;
         tip("Close this model.");
         ImGui::PushFont(smallFont());
-        ImGui::TextDisabled("%s", fmt::format("{} triangles, {} parts, {} levels", grouped(file.view.record->faceCount),
-                                              file.view.parts.size(), file.view.levelCount())
-                                      .c_str());
+        ImGui::TextDisabled("%s",
+                            fmt::format("{}, {}, {}", counted(file.view.record->faceCount, "triangle", "triangles"),
+                                        counted(file.view.parts.size(), "part", "parts"),
+                                        counted(file.view.levelCount(), "level", "levels"))
+                                .c_str());
         ImGui::PopFont();
-        tip(fmt::format("{} patches, {} in memory{}", file.view.patchCount(), bytesText(double(file.bytes.size)),
+        tip(fmt::format("{}, {} in memory{}", counted(file.view.patchCount(), "patch", "patches"),
+                        bytesText(double(file.bytes.size)),
                         file.baked ? ", baked here with the defaults of xgc bake" : "")
                 .c_str());
         ImGui::PopID();
@@ -69,11 +73,13 @@ void buildColours(ViewerState& state) {
                                {"Error", "5: how much of the allowed error each patch takes; white is past it"}};
     caption("COLOUR BY");
     const float gap = ImGui::GetStyle().ItemInnerSpacing.x * 0.5f;
-    const float width = (ImGui::GetContentRegionAvail().x - 4 * gap) / 5;
+    float spare = ImGui::GetContentRegionAvail().x - 4 * gap;
+    for (const Mode& mode : kModes) spare -= ImGui::CalcTextSize(mode.label).x;
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, ImGui::GetStyle().FramePadding.y});
     for (uint32_t i = 0; i < 5; ++i) {
         if (i > 0) ImGui::SameLine(0, gap);
         const auto mode = vulkan::ShadingMode(i);
+        const float width = ImGui::CalcTextSize(kModes[i].label).x + 0.2f * spare;
         if (toggleButton(kModes[i].label, state.mode == mode, width)) state.mode = mode;
         tip(kModes[i].tip);
     }
@@ -88,7 +94,7 @@ void buildLevels(ViewerState& state, const Models& models) {
     uint32_t faces = 1000;
     for (const auto& model : models.all()) faces = std::max(faces, model->file.view.record->faceCount);
     ImGui::SetNextItemWidth(-ImGui::GetFontSize() * 5.6f);
-    ImGui::SliderFloat("pixels", &state.pixels, 0.0f, 64, "%.2f", ImGuiSliderFlags_Logarithmic);
+    ImGui::SliderFloat("error", &state.pixels, 0.0f, 64, "%.2f px", ImGuiSliderFlags_Logarithmic);
     tip("Error that is allowed on screen: each patch takes the coarsest level that stays below. [ halves, ] doubles. "
         "Ctrl+click to type.");
     ImGui::Checkbox("##budget", &state.useBudget);
@@ -96,8 +102,8 @@ void buildLevels(ViewerState& state, const Models& models) {
     ImGui::SameLine();
     ImGui::BeginDisabled(!state.useBudget || state.morph);
     ImGui::SetNextItemWidth(-ImGui::GetFontSize() * 5.6f);
-    ImGui::SliderInt("budget", &state.budget, 100, int(faces * std::max<size_t>(1, models.all().size())), "%d",
-                     ImGuiSliderFlags_Logarithmic);
+    ImGui::SliderInt("budget", &state.budget, 100, int(faces * std::max<size_t>(1, models.all().size())),
+                     "%d triangles", ImGuiSliderFlags_Logarithmic);
     ImGui::EndDisabled();
     tip("Most triangles of a frame. Levels that change continuously take no budget.");
     ImGui::Checkbox("morph", &state.morph);
@@ -109,6 +115,7 @@ void buildLevels(ViewerState& state, const Models& models) {
     ImGui::SameLine(0, ImGui::GetFontSize());
     ImGui::Checkbox("split", &state.split);
     tip("V: beside it, one error for all patches, near or far, at as many triangles. Drag the line.");
+    if (models.all().empty()) return;
     const Measured& m = state.measured;
     ImGui::PushFont(smallFont());
     ImGui::TextDisabled("%s", fmt::format("{} triangles in {} draws hold {}{}", grouped(m.triangles), m.draws,
@@ -122,10 +129,16 @@ void buildLevels(ViewerState& state, const Models& models) {
 void buildPanel(ViewerState& state, Models& models, const DrawnModels& drawn, float width, float height) {
     ImGui::SetNextWindowPos({0, 0});
     ImGui::SetNextWindowSize({width, height});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
     ImGui::Begin("panel", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoBringToFrontOnFocus);
+    ImGui::PopStyleVar();
     ImGui::TextUnformatted("xgc-viewer");
+    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(" ? ").x -
+                    2 * ImGui::GetStyle().FramePadding.x);
+    if (ImGui::SmallButton(" ? ")) state.showHelp = !state.showHelp;
+    tip("F1: mouse and keys");
     ImGui::PushFont(smallFont());
     ImGui::TextDisabled("%s", state.device.c_str());
     ImGui::PopFont();

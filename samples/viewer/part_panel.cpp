@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace xgc::viewer {
 namespace {
@@ -85,11 +86,12 @@ void buildPicked(ViewerState& state, Models& models, const DrawnModels& drawn) {
     ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kAccent), "%s", model.partName(name.part).c_str());
     ImGui::PushFont(smallFont());
     const format::PartRecord& record = model.file.view.parts[name.part];
-    ImGui::TextDisabled(
-        "%s", fmt::format("{} triangles, {} patches, at {}", grouped(record.faceCount), record.patchCount,
-                          now.finest == now.coarsest ? fmt::format("level {}", now.finest)
-                                                     : fmt::format("levels {} to {}", now.finest, now.coarsest))
-                  .c_str());
+    ImGui::TextDisabled("%s", fmt::format("{}, {}, at {}", counted(record.faceCount, "triangle", "triangles"),
+                                          counted(record.patchCount, "patch", "patches"),
+                                          now.finest == now.coarsest
+                                              ? fmt::format("level {}", now.finest)
+                                              : fmt::format("levels {} to {}", now.finest, now.coarsest))
+                                  .c_str());
     ImGui::PopFont();
     bool changed = buildControls(control, now, model.file.view.levelCount());
     const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
@@ -124,6 +126,7 @@ void buildRow(ViewerState& state, const Model& model, const DrawnModels& drawn, 
     const float size = ImGui::GetTextLineHeight();
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const bool picked = state.selected && state.selected->model == name.model && state.selected->part == name.part;
+    if (picked && std::exchange(state.showPickedRow, false)) ImGui::SetScrollHereY();
     if (ImGui::Selectable("##row", picked, ImGuiSelectableFlags_AllowDoubleClick)) {
         state.selected = name;
         if (ImGui::IsMouseDoubleClicked(0)) state.askFocus = true;

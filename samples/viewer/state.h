@@ -57,6 +57,7 @@ struct ViewerState {
     float splitAt = 0.5f; ///< of the area's width
 
     std::optional<PartName> selected;
+    bool showPickedRow = false; ///< bring it into the list's sight
     bool showPanel = true;
     bool showGraphs = true;
     bool showHelp = false;
@@ -79,6 +80,8 @@ struct ViewerState {
 
     std::vector<PartName> changedParts; ///< whose control the renderer is to be told
 
+    std::string notice;              ///< of what was done, for a while
+    float noticeSeconds = 0;         ///< that it is still shown
     std::vector<std::string> errors; ///< shown one after the other until they are dismissed
     Measured measured;
     std::string device;

@@ -73,7 +73,7 @@ void applyTheme(float scale) {
     ImGui::StyleColorsDark();
     applyColors();
     ImGuiStyle& style = ImGui::GetStyle();
-    style.WindowRounding = 0;
+    style.WindowRounding = 5;
     style.FrameRounding = 4;
     style.GrabRounding = 4;
     style.ChildRounding = 4;

@@ -33,10 +33,13 @@ std::string grouped(uint64_t number) {
     return out;
 }
 
+std::string counted(uint64_t number, const char* one, const char* many) {
+    return grouped(number) + " " + (number == 1 ? one : many);
+}
+
 std::string pixelsText(float pixels) {
-    if (pixels == 0) return "0 px";
-    if (pixels < 1) return fmt::format("{:.2f} px", pixels);
-    if (pixels < 10) return fmt::format("{:.1f} px", pixels);
+    if (pixels > 0 && pixels < 0.01f) return "under 0.01 px";
+    if (pixels < 10) return fmt::format("{:.2g} px", pixels);
     constexpr float kMost = 1e6f;
     return (pixels > kMost ? "over " : "") + grouped(uint64_t(std::min(pixels, kMost) + 0.5f)) + " px";
 }

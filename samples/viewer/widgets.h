@@ -9,6 +9,8 @@ namespace xgc::viewer {
 
 /// 1,234,567
 std::string grouped(uint64_t number);
+/// 1 patch, 2,345 patches
+std::string counted(uint64_t number, const char* one, const char* many);
 /// 0.25 px, 3.4 px, 1,234 px
 std::string pixelsText(float pixels);
 /// 12 bytes, 3.4 KiB, ...

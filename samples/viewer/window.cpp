@@ -3,6 +3,7 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <utility>
 
@@ -40,7 +41,9 @@ bake::Status Window::create(uint32_t width, uint32_t height) {
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     window_ = glfwCreateWindow(int(width), int(height), "xgc-viewer", nullptr, nullptr);
     if (!window_) return bake::systemError(fmt::format("the window could not be made ({})", lastError()));
-    glfwSetWindowSizeLimits(window_, 320, 240, GLFW_DONT_CARE, GLFW_DONT_CARE);
+    // Where the panel still leaves a picture, unless less was asked for.
+    glfwSetWindowSizeLimits(window_, std::min(640, int(width)), std::min(420, int(height)), GLFW_DONT_CARE,
+                            GLFW_DONT_CARE);
     glfwSetWindowUserPointer(window_, this);
     installCallbacks();
     return {};
