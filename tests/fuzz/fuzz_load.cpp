@@ -1,6 +1,6 @@
-// Decodes whatever bytes it is given, with their checksums made right so that the codecs are reached, and draws what
-// opens. The corpus holds two small compressed assets, one with frames that zstd stores as they are: their codes can be
-// altered without breaking the frame.
+// Decodes whatever bytes it is given, with their checksums made right so that the codecs are reached, and draws and
+// poses what opens. The corpus holds small compressed assets, and some with frames that zstd stores as they are: their
+// codes can be altered without breaking the frame.
 #include "meshes/hostile.h"
 
 #include <xgc/load.h>
@@ -23,6 +23,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     xgc::test::ExactBytes scratch(std::span<const std::byte>(fill).first(decoded.scratchBytes));
     if (!xgc::decode(file.span(), scratch.span(), image.span()).ok()) return 0;
     xgc::AssetView asset;
-    if (xgc::openAll(image.span(), asset).ok() && !xgc::test::drawsSafely(asset, 2, uint32_t(size))) std::abort();
+    if (!xgc::openAll(image.span(), asset).ok()) return 0;
+    if (!xgc::test::drawsSafely(asset, 2, uint32_t(size))) std::abort();
+    xgc::test::posesSafely(asset);
     return 0;
 }

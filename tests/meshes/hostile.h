@@ -1,6 +1,7 @@
 #pragma once
 
 #include <xgc/indices.h>
+#include <xgc/skin.h>
 
 #include <xxhash.h>
 
@@ -98,6 +99,25 @@ inline bool drawsSafely(const AssetView& asset, uint32_t states, uint32_t seed) 
         }
     }
     return true;
+}
+
+/// Poses an asset and reads all that a pose tells of it; a sanitizer watches.
+inline void posesSafely(const AssetView& asset) {
+    if (asset.joints.empty() && asset.morphTargets.empty()) return;
+    std::vector<glm::mat4> rest(asset.nodes.size()), nodes(asset.nodes.size());
+    restNodes(asset, rest);
+    nodesToMesh(asset, rest, nodes);
+    std::vector<glm::mat4x3> joints(asset.joints.size());
+    jointMatrices(asset, nodes, joints);
+    const std::vector<float> weights(asset.morphTargets.size(), 1.5f);
+    const Pose pose{joints, weights};
+    for (uint32_t row = 0; row < asset.record->vertexCount; ++row) static_cast<void>(posedPosition(asset, pose, row));
+    std::vector<PosedPatch> patches(asset.patchCount());
+    static_cast<void>(posePatches(asset, pose, patches));
+    for (uint32_t p = 0; p < asset.patchCount(); ++p) {
+        for (uint32_t level = 0; level < asset.levelCount(); ++level)
+            static_cast<void>(posedError(asset, p, level, patches[p], weights));
+    }
 }
 
 } // namespace xgc::test
