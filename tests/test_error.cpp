@@ -2,6 +2,7 @@
 #include "meshes/toy_hierarchy.h"
 
 #include <bake/surface_distance.h>
+#include <error/direct_bound.h>
 #include <verify/nearest.h>
 #include <xgc/bake/default_hierarchy.h>
 #include <xgc/bake/error.h>
@@ -395,6 +396,94 @@ TEST_CASE("what has vanished is as near to the patch beside it at any of that on
         Numbers numbers{3};
         CHECK(worstInMixedStates(mesh, h, numbers) <= 1);
     }
+}
+
+namespace {
+
+/// A sheet of squares over [0, 1] x [0, 1], each cut in two.
+class Sheet : public DirectTarget {
+public:
+    Sheet(uint32_t n, float roughness) : n_(n) {
+        Numbers numbers{7};
+        for (uint32_t i = 0; i < (n + 1) * (n + 1); ++i) heights_.push_back(roughness * numbers.next());
+    }
+    uint32_t at(float x, float y) const { // a triangle there
+        const auto cell = [&](float v) { return std::min(uint32_t(v * float(n_)), n_ - 1); };
+        const bool upper = y * float(n_) - float(cell(y)) > x * float(n_) - float(cell(x));
+        return 2 * (cell(y) * n_ + cell(x)) + upper;
+    }
+    NearTriangle near(const glm::dvec3&, uint32_t hint, double) const override { return {hint, 0}; }
+    Triangle triangle(uint32_t t) const override {
+        const uint32_t x = t / 2 % n_, y = t / 2 / n_;
+        return t % 2 ? Triangle{point(x, y), point(x + 1, y + 1), point(x, y + 1)}
+                     : Triangle{point(x, y), point(x + 1, y), point(x + 1, y + 1)};
+    }
+    void neighbours(uint32_t, std::vector<uint32_t>&) const override {}
+    uint32_t beside(uint32_t t, int k) const override {
+        const uint32_t x = t / 2 % n_, y = t / 2 / n_;
+        if (k == (t % 2 ? 0 : 2)) return t ^ 1;
+        if (t % 2) return k == 1 ? (y + 1 < n_ ? t + 2 * n_ - 1 : kNone) : (x > 0 ? t - 3 : kNone);
+        return k == 0 ? (y > 0 ? t - 2 * n_ + 1 : kNone) : (x + 1 < n_ ? t + 3 : kNone);
+    }
+
+private:
+    glm::vec3 point(uint32_t x, uint32_t y) const {
+        return {float(x) / float(n_), float(y) / float(n_), heights_[y * (n_ + 1) + x]};
+    }
+    uint32_t n_;
+    std::vector<float> heights_;
+};
+
+} // namespace
+
+TEST_CASE("laid over a surface, a triangle is as far from it as its parts are from what is below them") {
+    const Sheet flat(90, 0), rough(24, 0.02f);
+    Numbers numbers{11};
+    for (const Sheet* sheet : {&flat, &rough}) {
+        Overlay overlay(*sheet, 1e-7);
+        std::vector<Triangle> all;
+        for (uint32_t t = 0; t < (sheet == &flat ? 0 : 24 * 24 * 2); ++t) all.push_back(sheet->triangle(t));
+        const SurfaceDistance distance(all);
+        for (int i = 0; i < 40; ++i) {
+            glm::dvec3 c[3];
+            for (glm::dvec3& p : c)
+                p = {0.5 + 0.45 * double(numbers.next()), 0.5 + 0.45 * double(numbers.next()), 0.01};
+            const glm::dvec3 middle = (c[0] + c[1] + c[2]) / 3.0;
+            const double bound = std::sqrt(overlay.of(c, sheet->at(float(middle.x), float(middle.y))));
+            if (sheet == &flat) {
+                CHECK(bound == doctest::Approx(0.01));
+                continue;
+            }
+            double sampled = 0;
+            for (int u = 0; u <= 60; ++u) {
+                for (int v = 0; u + v <= 60; ++v) {
+                    const glm::dvec3 p = c[0] + (c[1] - c[0]) * (u / 60.0) + (c[2] - c[0]) * (v / 60.0);
+                    sampled = std::max(sampled, distance.nearest(p, 0, 1e9).squared);
+                }
+            }
+            CHECK(bound >= std::sqrt(sampled));
+            CHECK(bound <= 0.05); // 2 * roughness, and the height
+        }
+        // Past the border nothing is known, and from beside the triangle nothing is found.
+        const glm::dvec3 across[3] = {{0.5, 0.5, 0}, {1.2, 0.5, 0}, {0.5, 0.8, 0}};
+        CHECK(std::isinf(overlay.of(across, sheet->at(0.55f, 0.55f))));
+        const glm::dvec3 inside[3] = {{0.5, 0.5, 0}, {0.7, 0.5, 0}, {0.5, 0.7, 0}};
+        CHECK(std::isinf(overlay.of(inside, sheet->at(0.1f, 0.1f))));
+        CHECK_FALSE(std::isinf(overlay.of(inside, sheet->at(0.55f, 0.55f))));
+        // To the border is not past it.
+        const glm::dvec3 whole[3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
+        CHECK(std::sqrt(overlay.of(whole, sheet->at(0.9f, 0.1f))) <= 0.021);
+    }
+}
+
+TEST_CASE("a flat sheet coarsens at no error, however fine it was") {
+    const Mesh mesh = test::welded(test::grid(50));
+    const Topology topology = buildTopology(mesh);
+    const Hierarchy h =
+        buildDefaultHierarchy(mesh, topology, splitPatches(mesh, topology, test::slabs(mesh, 1), 0), {});
+    const size_t drawn = drawSurface(mesh, h, std::vector<uint8_t>(1, 1)).triangles.size();
+    CHECK(drawn < mesh.faceCount() / 100);
+    CHECK(errorAt(measured(mesh, h), h, 0, 1) < 1e-6f);
 }
 
 TEST_CASE("the bounds of the thesis's hierarchy are tight") {

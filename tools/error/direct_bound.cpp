@@ -106,6 +106,9 @@ double DirectBound::of(const glm::dvec3 (&corners)[3], const uint32_t (&hints)[3
     pieces_.clear();
     reached_ = 0;
     push(whole);
+    if (pieces_.front().bound <= std::max(enough_, reached_ * kCloseEnough)) return pieces_.front().bound;
+    const double along = overlaid(whole, enough_);
+    if (along <= std::max(enough_, reached_ * kCloseEnough)) return along;
     // The loosest piece first: what is left when it will do is the bound of all.
     while (pieces_.front().bound > std::max(enough_, reached_ * kCloseEnough) && pieces_.size() < kMostPieces) {
         std::pop_heap(pieces_.begin(), pieces_.end(), isTighter);
@@ -113,7 +116,20 @@ double DirectBound::of(const glm::dvec3 (&corners)[3], const uint32_t (&hints)[3
         pieces_.pop_back();
         split(piece);
     }
-    return pieces_.front().bound;
+    return std::min(pieces_.front().bound, along);
+}
+
+/// The least bound of overlays from the triangles that are known to be near.
+double DirectBound::overlaid(const Piece& whole, double enough) {
+    const glm::dvec3 middle = (whole.corners[0] + whole.corners[1] + whole.corners[2]) / 3.0;
+    uint32_t tried[4] = {target_.near(middle, whole.near[0].triangle, nearEnough_).triangle, whole.near[0].triangle,
+                         whole.near[1].triangle, whole.near[2].triangle};
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 4 && least > enough; ++i) {
+        if (tried[i] == kNone || std::find(tried, tried + i, tried[i]) != tried + i) continue;
+        least = std::min(least, overlay_.of(whole.corners, tried[i]));
+    }
+    return least;
 }
 
 // Jarvis's march: there are few points. Of points on a line, but for rounding, the farthest is the corner.
@@ -191,6 +207,12 @@ void InputTarget::neighbours(uint32_t t, std::vector<uint32_t>& out) const {
             if (f != t) out.push_back(f);
         }
     }
+}
+
+uint32_t InputTarget::beside(uint32_t t, int k) const {
+    const auto faces = input_.topology.facesOfEdge(input_.topology.faceEdges[t][k]);
+    if (faces.size() != 2) return kNone;
+    return faces[0] == t ? faces[1] : faces[0];
 }
 
 NearTriangle DrawnTarget::near(const glm::dvec3& p, uint32_t hint, double enough) const {
