@@ -338,6 +338,29 @@ TEST_CASE("instances of an asset at one level are one draw a material") {
     CHECK(stage.lists[0].stats().instances == 20);
 }
 
+TEST_CASE("what a list was not created for is refused by name, and not drawn") {
+    const Assets assets;
+    Stage stage(1, kRoomy, kRoomy);
+    stage.place(stage.add(assets.large.view, 0, 0), makePlacement(glm::mat4(1)));
+    SelectionDesc desc;
+    desc.view = makeView({0, 0, 3}, 1, 1080);
+    stage.selections[0].update(stage.scene, desc);
+    REQUIRE(stage.selections[0].kind(0) == InstanceKind::mixed);
+    for (const bool domains : {true, false}) {
+        DrawListConfig config;
+        config.scene = stage.scene.config();
+        (domains ? config.domainCapacity : config.materialCapacity) = 1;
+        DrawList list;
+        REQUIRE(list.create(config).ok());
+        list.update(stage.scene, stage.selections[0], stage.cache);
+        CHECK(list.refusal().code == StatusCode::outOfCapacity);
+        CHECK(list.refusal().element ==
+              (domains ? assets.large.view.record->domainCount : assets.large.view.materials.size()));
+        CHECK(list.draws().empty());
+        CHECK(list.stats().deferredInstances == 1);
+    }
+}
+
 TEST_CASE("a second view with the same levels uploads nothing") {
     const Assets assets;
     Stage one(1, kRoomy, kRoomy), two(2, kRoomy, kRoomy);

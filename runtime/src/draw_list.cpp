@@ -136,11 +136,31 @@ void DrawList::Impl::dropGone() {
     }
 }
 
+/// False, with the setting's name, where an asset is past what the list was created for.
+bool DrawList::Impl::holds(uint32_t asset) {
+    const AssetDesc& desc = scene->assets[asset].desc;
+    const uint64_t materialEnd = desc.firstMaterial + uint64_t(desc.asset->materials.size());
+    if (desc.asset->record->domainCount > config.domainCapacity) {
+        refusal = outOfCapacity("an asset has too many domains: raise DrawListConfig::domainCapacity",
+                                desc.asset->record->domainCount);
+    } else if (materialEnd > config.materialCapacity) {
+        refusal = outOfCapacity("too many materials: raise DrawListConfig::materialCapacity", materialEnd);
+    } else {
+        return true;
+    }
+    return false;
+}
+
 void DrawList::Impl::follow(uint32_t id) {
     DrawnInstance& own = instances[id];
     const InstanceKind kind = selection->kind(id);
     own.late = own.morphs = false;
     if (kind == InstanceKind::culled) return release(own, *cache);
+    if (!holds(own.asset)) {
+        own.late = true;
+        ++stats.deferredInstances;
+        return;
+    }
     if (!assetsInSight[own.asset]) assetsInSight[own.asset] = holdWhole(own.asset, coarsestState(own.asset));
     own.late = kind == InstanceKind::whole ? !followWhole(own, selection->wholeState(id))
                                            : !followMixed(own, selection->levels(id), selection->visible(id));

@@ -93,6 +93,7 @@ struct DrawList::Impl : Allocated<DrawList::Impl> {
     void release(DrawnInstance& own, IndexCache& from);
     void dropGone();
 
+    bool holds(uint32_t asset);
     void follow(uint32_t id);
     bool becomeWhole(DrawnInstance& own, uint32_t state);
     void becomeCoarsest(DrawnInstance& own);

@@ -122,8 +122,14 @@ Status Renderer::Impl::enterAsset(AssetHandle handle) {
     StoredAsset& stored = assets.at(handle.index);
     // Of a streamed one the residency's own view: it knows its assets by that.
     const AssetView& view = stored.streamed == format::kNone ? stored.view : config.residency->view(stored.streamed);
-    Status status =
-        scene.addAsset({.asset = &view, .firstMaterial = uint32_t(stored.materials.first)}, stored.sceneAsset);
+    Status status;
+    if (view.record->domainCount > config.domainCapacity) {
+        status = {StatusCode::outOfCapacity, "the asset has too many domains: raise RendererConfig::domainCapacity",
+                  view.record->domainCount};
+    }
+    if (status.ok()) {
+        status = scene.addAsset({.asset = &view, .firstMaterial = uint32_t(stored.materials.first)}, stored.sceneAsset);
+    }
     if (status.ok()) {
         status = indexCache.addAsset(stored.sceneAsset, view);
         if (status.ok()) {
