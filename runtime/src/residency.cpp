@@ -26,9 +26,9 @@ using namespace format;
 
 constexpr uint32_t kReading = 1, kArrived = 2, kFailed = 3;
 /// A page takes another's place where it is worth so much more.
-constexpr float kBetter = 1.25f;
+constexpr float kBetter = 1.1f;
 /// What is out of sight counts so much of what it would in sight.
-constexpr float kOutOfSight = 0.25f;
+constexpr float kOutOfSight = 0.1f;
 
 Status outOfCapacity(const char* message, uint64_t element) {
     return {StatusCode::outOfCapacity, message, element};

@@ -117,7 +117,7 @@ public:
     // What a view asks for: the error of each patch within `pixels`.
     void want(uint32_t asset, const Placement& placement, const View& view, float pixels,
               std::span<const uint8_t> visible = {});
-    /// Of all instances of a scene: what is out of sight counts a quarter.
+    /// Of all instances of a scene: what is out of sight counts a tenth.
     void want(const Scene& scene, const Selection& selection, const SelectionDesc& desc);
 
     // What is drawn: those pages stay.
