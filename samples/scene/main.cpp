@@ -1,6 +1,7 @@
 // A scene that uses all of it: a hundred creatures around a temple on a terrain, and an animal that runs by its joints,
 // in the sun with shadows, every part at a level of its own. Writes a picture a frame.
 #include "clip.h"
+#include "pages.h"
 #include "world.h"
 
 #include <xgc/bake/image.h>
@@ -13,6 +14,7 @@
 #include <fmt/format.h>
 #include <glm/glm.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -23,6 +25,8 @@ using namespace xgc;
 using namespace xgc::scene_sample;
 
 constexpr uint32_t kCreatures = 100;
+constexpr uint64_t kDiskBytes = 200'000'000 / 30; ///< a frame
+constexpr uint32_t kMostSettling = 300;           ///< frames: under a budget pages may never come to rest
 
 struct Options {
     std::filesystem::path creature, temple, terrain, fox, animation, output;
@@ -35,6 +39,8 @@ struct Options {
     bool still = false;
     bool gpu = false;
     bool eyeShadows = false;
+    double stream = 0; ///< share of the scene's bytes that its pages may take; 0: all is in memory
+    bool approach = false;
 };
 
 // Destroyed from the last up: the target waits for its frames before anything that they use goes.
@@ -43,6 +49,7 @@ struct App {
     LoadedAsset creature, temple, terrain, fox;
     Clip clip;
     World world;
+    Pages pages; ///< of creature, temple and terrain
     vulkan::HeadlessDevice device;
     vulkan::Context context;
     vulkan::Renderer renderer;
@@ -65,11 +72,16 @@ bake::Status load(App& app) {
         const bake::Status status = asset->load(*file);
         if (!status.ok()) return status;
     }
+    // Where things stand is told by the whole files; an engine has that from its level.
     app.world = makeWorld({app.creature.view, app.temple.view, app.terrain.view, app.fox.view}, kCreatures);
+    if (o.stream > 0) {
+        const bake::Status status = app.pages.open({o.creature, o.temple, o.terrain}, o.stream);
+        if (!status.ok()) return status;
+    }
     return o.animation.empty() ? bake::Status{} : Clip::read(o.animation, o.clip, app.clip);
 }
 
-vulkan::RendererConfig configFor(const App& app) {
+vulkan::RendererConfig configFor(App& app) {
     const AssetView* one[] = {&app.creature.view, &app.temple.view, &app.terrain.view, &app.fox.view};
     vulkan::RendererConfig config = vulkan::configFor(one, 1);
     config.instanceCapacity = kCreatures + 4;
@@ -77,6 +89,7 @@ vulkan::RendererConfig configFor(const App& app) {
     config.indexBytes += 64u << 20;
     config.viewCapacity = 2;
     if (app.options.gpu) config.gpu.views = 2;
+    if (app.options.stream > 0) config.residency = &app.pages.residency();
     config.waitNanoseconds = 120'000'000'000; // a software device takes its time
     return config;
 }
@@ -88,7 +101,9 @@ Status addAll(App& app) {
                                                                        {&app.fox.view, {app.world.fox}}};
     for (const auto& [asset, places] : all) {
         vulkan::AssetHandle handle;
-        Status status = app.renderer.addAsset(*asset, handle);
+        const bool streamed = app.options.stream > 0 && asset != &app.fox.view;
+        Status status = streamed ? app.renderer.addStreamedAsset(app.pages.asset(app.handles.size()), handle)
+                                 : app.renderer.addAsset(*asset, handle);
         if (!status.ok()) return status;
         app.handles.push_back(handle);
         for (const glm::mat4& place : places) {
@@ -134,11 +149,12 @@ Status pose(App& app, float second) {
     return app.renderer.setPose(app.runner, {joints, {}});
 }
 
-vulkan::ViewDesc viewFor(const App& app, const vulkan::SunView& sunView, const glm::vec3& towards) {
+vulkan::ViewDesc viewFor(const App& app, const vulkan::SunView& sunView, const glm::vec3& towards, float second) {
     vulkan::ViewDesc view;
     view.mode = *vulkan::modeNamed(app.options.mode);
     view.camera.eye = app.world.eye;
     view.camera.target = app.world.target;
+    if (app.options.approach) view.camera.eye += (1 - std::cos(0.8f * second)) * glm::vec3(-1.8f, -0.3f, -3.6f);
     view.camera.fovY = 0.62f;
     view.camera.aspect = float(app.options.width) / float(app.options.height);
     view.camera.nearPlane = 0.05f;
@@ -148,14 +164,19 @@ vulkan::ViewDesc viewFor(const App& app, const vulkan::SunView& sunView, const g
     return view;
 }
 
-/// The camera's levels, and the sun's: no caster is more than a level coarser than what is seen of it; or those that
-/// the camera's eye asks for, for the device refers to no other view.
-void select(App& app, const vulkan::ViewDesc& view, const vulkan::SunView& sun) {
+SelectionDesc wantedBy(const App& app, const vulkan::ViewDesc& view) {
     SelectionDesc desc;
     desc.view = makeView(view.camera.eye, view.camera.fovY, float(app.options.height));
     desc.view.nearest = view.camera.nearPlane;
     desc.frustum = makeFrustum(view.camera.worldToClip());
     desc.pixels = app.options.errorPixels;
+    return desc;
+}
+
+/// The camera's levels, and the sun's: no caster is more than a level coarser than what is seen of it; or those that
+/// the camera's eye asks for, for the device refers to no other view.
+void select(App& app, const vulkan::ViewDesc& view, const vulkan::SunView& sun) {
+    const SelectionDesc desc = wantedBy(app, view);
     app.renderer.select(0, desc);
     SelectionDesc shadow;
     if (app.options.gpu || app.options.eyeShadows) {
@@ -172,7 +193,11 @@ void select(App& app, const vulkan::ViewDesc& view, const vulkan::SunView& sun) 
 Status drawFrame(App& app, float second, uint64_t& ticket) {
     const glm::vec3 towards = app.world.towardsSun;
     const vulkan::SunView sun = vulkan::sunView(towards, app.world.center, app.world.radius, app.options.shadowTexels);
-    const vulkan::ViewDesc view = viewFor(app, sun, towards);
+    const vulkan::ViewDesc view = viewFor(app, sun, towards, second);
+    if (app.options.stream > 0) {
+        app.pages.residency().want(app.renderer.scene(), app.renderer.selection(), wantedBy(app, view));
+        app.pages.read(kDiskBytes);
+    }
     Status status = app.renderer.beginFrame();
     if (status.ok()) status = pose(app, second);
     if (!status.ok()) return status;
@@ -194,7 +219,39 @@ Status drawFrame(App& app, float second, uint64_t& ticket) {
     return app.target.submit(std::array{app.renderer.frameDone()}, ticket);
 }
 
-bake::Status writeFrame(App& app, uint64_t ticket, uint32_t frame) {
+/// Of the patches in sight of the camera: errors on the screen, rising.
+std::vector<float> errorsInSight(const App& app, const SelectionDesc& desc) {
+    const Scene& scene = app.renderer.scene();
+    const DrawList& draws = app.renderer.drawList();
+    std::vector<float> errors;
+    for (uint32_t id = 0; id < scene.instanceEnd(); ++id) {
+        if (!scene.hasInstance(id) || draws.kind(id) != InstanceKind::mixed) continue; // whole ones are as asked for
+        const AssetView& asset = *scene.asset(scene.assetOf(id)).asset;
+        const Placement& placement = scene.placement(id);
+        for (uint32_t p = 0; p < asset.patchCount(); ++p) {
+            if (!app.renderer.selection().visible(id)[p]) continue;
+            const glm::vec4 sphere = scene.patchBounds(scene.assetOf(id))[p].sphere;
+            const glm::vec3 center = placement.toWorld * glm::vec4(glm::vec3(sphere), 1);
+            const float away = glm::distance(center, desc.view.eye) - sphere.w * placement.maxScale;
+            const float error = asset.error(p, draws.levels(id)[p]) * placement.maxScale;
+            errors.push_back(error * desc.view.pixelsPerUnit / std::max(away, desc.view.nearest));
+        }
+    }
+    std::sort(errors.begin(), errors.end());
+    return errors;
+}
+
+std::string streamingStats(const App& app, const SelectionDesc& desc) {
+    const std::vector<float> errors = errorsInSight(app, desc);
+    if (app.options.stream == 0 || errors.empty()) return {};
+    const ResidencyStats stats = app.pages.residency().stats();
+    return fmt::format(", \"errorPixels95\": {:.2f}, \"errorPixels\": {:.2f}, \"residentBytes\": {}, "
+                       "\"readBytes\": {}, \"sceneBytes\": {}",
+                       errors[errors.size() * 19 / 20], errors.back(), stats.residentBytes, stats.readBytes,
+                       app.pages.sceneBytes());
+}
+
+bake::Status writeFrame(App& app, uint64_t ticket, uint32_t frame, float second) {
     bake::Image image{app.options.width, app.options.height, {}};
     image.pixels.resize(size_t(image.width) * image.height);
     const Status read = app.target.read(ticket, std::as_writable_bytes(std::span(image.pixels)));
@@ -204,15 +261,17 @@ bake::Status writeFrame(App& app, uint64_t ticket, uint32_t frame) {
         stats.triangles += app.renderer.gpuStats(view).triangles;
         stats.draws += app.renderer.gpuStats(view).draws;
     }
-    fmt::print("{{\"frame\": {}, \"triangles\": {}, \"draws\": {}, \"uploadBytes\": {}}}\n", frame, stats.triangles,
-               stats.draws, stats.uploadBytes);
+    const SelectionDesc desc = wantedBy(app, viewFor(app, {}, {}, second));
+    fmt::print("{{\"frame\": {}, \"triangles\": {}, \"draws\": {}, \"uploadBytes\": {}{}}}\n", frame, stats.triangles,
+               stats.draws, stats.uploadBytes, streamingStats(app, desc));
     return bake::writePng(image, app.options.output / fmt::format("frame_{:04}.png", frame));
 }
 
 /// Assets arrive in pieces, and what the device made is known framesInFlight frames later.
 bake::Status settle(App& app, uint64_t& ticket) {
     bake::Status status;
-    for (uint32_t still = 0; status.ok() && still <= (app.options.gpu ? vulkan::RendererConfig{}.framesInFlight : 0);) {
+    const uint32_t enough = app.options.gpu || app.options.stream > 0 ? vulkan::RendererConfig{}.framesInFlight : 0;
+    for (uint32_t still = 0, frame = 0; status.ok() && still <= enough && frame < kMostSettling; ++frame) {
         status = fromRuntime(drawFrame(app, 0, ticket));
         still = app.renderer.stats().uploadBytes > 0 ? 0 : still + 1;
     }
@@ -231,8 +290,9 @@ bake::Status run(App& app) {
     uint64_t ticket = 0;
     status = settle(app, ticket);
     for (uint32_t frame = 0; status.ok() && frame < app.options.frames; ++frame) {
-        status = fromRuntime(drawFrame(app, 0.3f + float(frame) / 30, ticket));
-        if (status.ok()) status = writeFrame(app, ticket, frame);
+        const float second = 0.3f + float(frame) / 30;
+        status = fromRuntime(drawFrame(app, second, ticket));
+        if (status.ok()) status = writeFrame(app, ticket, frame, second);
     }
     return status;
 }
@@ -257,7 +317,13 @@ int main(int argc, char** argv) {
     cli.add_option("--mode", o.mode, "How it is coloured")
         ->check(CLI::IsMember({"shaded", "parts", "levels", "wire"}))
         ->capture_default_str();
-    cli.add_flag("--gpu", o.gpu, "Chooses levels, culls and builds index lists and draws on the device");
+    CLI::Option* stream =
+        cli.add_option("--stream", o.stream,
+                       "Streams all but the runner (baked with --tiers), in memory of this share of their pages: 0.1")
+            ->check(CLI::Range(0.001, 10.0));
+    cli.add_flag("--approach", o.approach, "The camera goes towards the temple and back");
+    cli.add_flag("--gpu", o.gpu, "Chooses levels, culls and builds index lists and draws on the device")
+        ->excludes(stream);
     cli.add_flag("--eye-shadows", o.eyeShadows, "What casts shadows takes its levels from the camera, as with --gpu");
     cli.add_flag("--still", o.still, "Draws at twice the size and halves the picture");
     CLI11_PARSE(cli, argc, argv);
