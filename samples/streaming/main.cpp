@@ -1,11 +1,14 @@
 // Streams an asset that is larger than the memory it is given, with no graphics API: flies a camera around in it, and
 // writes what was drawn as a table (FILE.csv) and as a picture (FILE.svg).
 //
-//     xgc bake terrain.glb -o terrain.xgc --tiers 6
+//     xgc model terrain --faces 2000000 -o terrain.glb
+//     xgc bake terrain.glb -o terrain.xgc --patch-faces 512 --tiers 8 --page-kb 32
 //     xgc_streaming terrain.xgc [OUTPUT without ending] [budget, of the scene's bytes: 0.1]
 
 #include "chart.h"
 #include "disk.h"
+
+#include <glm/gtc/matrix_transform.hpp>
 
 #include <cmath>
 #include <cstdlib>
@@ -63,7 +66,9 @@ bool create(World& world, Disk& disk, const xgc::AssetView& tables, uint64_t bud
     config.pageBytes = limits.bytes;
     config.pageRows = limits.rows;
     config.reader = disk.reader();
-    const xgc::DrawListConfig list;
+    xgc::DrawListConfig list;
+    list.domainCapacity = std::max(list.domainCapacity, tables.record->domainCount);
+    list.scene.assetPatchCapacity = list.scene.patchCapacity = std::max(list.scene.patchCapacity, tables.patchCount());
     return succeeded(world.residency.create(config)) && succeeded(world.residency.addAsset(tables, world.asset)) &&
            succeeded(world.scene.create(list.scene)) && succeeded(world.selection.create(list.scene)) &&
            succeeded(world.list.create(list)) && succeeded(world.cache.create({.arenaBytes = 256u << 20}));
@@ -83,14 +88,19 @@ bool waitForFirst(World& world, Disk& disk) {
            succeeded(world.scene.addInstance(id, {}, world.instance));
 }
 
-/// Round within the asset, nearer and farther.
-xgc::View viewAt(const xgc::format::AssetRecord& asset, uint32_t frame) {
+/// Round within the asset, nearer and farther, looking ahead.
+xgc::SelectionDesc viewAt(const xgc::format::AssetRecord& asset, uint32_t frame) {
     const float t = 6.2831853f * float(frame) / float(kFrames), radius = asset.sphereRadius;
     const float far = 0.45f + 0.25f * std::sin(3 * t);
     const glm::vec3 center(asset.sphereCenter[0], asset.sphereCenter[1], asset.sphereCenter[2]);
-    xgc::View view = xgc::makeView(center + far * radius * glm::vec3(std::cos(t), 0.25f, std::sin(t)), 1, 1080);
-    view.nearest = 0.01f * radius;
-    return view;
+    const glm::vec3 eye = center + far * radius * glm::vec3(std::cos(t), 0.25f, std::sin(t));
+    const glm::vec3 ahead(-std::sin(t), -0.1f, std::cos(t));
+    xgc::SelectionDesc desc;
+    desc.view = xgc::makeView(eye, 1, 1080);
+    desc.view.nearest = 0.01f * radius;
+    desc.frustum = xgc::makeFrustum(glm::perspectiveRH_ZO(1.0f, 16.0f / 9, desc.view.nearest, 10 * radius) *
+                                    glm::lookAtRH(eye, eye + ahead, glm::vec3(0, 1, 0)));
+    return desc;
 }
 
 void drawFrame(World& world, Disk& disk, const xgc::SelectionDesc& desc) {
@@ -112,8 +122,15 @@ Sample measure(const World& world, const xgc::SelectionDesc& desc) {
     sample.residentBytes = double(stats.residentBytes);
     sample.readBytes = double(stats.readBytes);
     sample.triangles = double(world.list.stats().triangles);
-    if (world.list.kind(world.instance) == xgc::InstanceKind::mixed)
-        sample.errorPixels = xgc::projectedError(view, {}, desc.view, world.list.levels(world.instance));
+    if (world.list.kind(world.instance) != xgc::InstanceKind::mixed) return sample;
+    const xgc::Levels levels = world.list.levels(world.instance);
+    for (uint32_t p = 0; p < levels.size(); ++p) {
+        if (!world.selection.visible(world.instance)[p]) continue;
+        const glm::vec4& sphere = world.scene.patchBounds(world.scene.assetOf(world.instance))[p].sphere;
+        const float away = glm::distance(glm::vec3(sphere), desc.view.eye) - sphere.w;
+        const float error = view.error(p, levels[p]) * desc.view.pixelsPerUnit / std::max(away, desc.view.nearest);
+        sample.errorPixels = std::max(sample.errorPixels, double(error));
+    }
     return sample;
 }
 
@@ -131,7 +148,8 @@ bool writeTable(const std::string& path, const std::vector<Sample>& samples) {
 int run(std::FILE* file, const std::string& output, double share) {
     Tables tables;
     xgc::AssetView asset;
-    if (!tables.read(file)) return std::fprintf(stderr, "xgc_streaming: the file has no tables\n"), 1;
+    if (!tables.read(file))
+        return std::fprintf(stderr, "xgc_streaming: this is no .xgc file: bake the model with --tiers 6\n"), 1;
     if (!succeeded(xgc::openTables(tables.span(), asset))) return 1;
     if (asset.tierCount() < 2) return std::fprintf(stderr, "xgc_streaming: bake the file with --tiers 6\n"), 1;
     uint64_t sceneBytes = 0;
@@ -144,8 +162,7 @@ int run(std::FILE* file, const std::string& output, double share) {
     std::vector<Sample> samples;
     double sum = 0, worst = 0;
     for (uint32_t frame = 0; frame < kFrames; ++frame) {
-        xgc::SelectionDesc desc;
-        desc.view = viewAt(*asset.record, frame);
+        const xgc::SelectionDesc desc = viewAt(*asset.record, frame);
         drawFrame(world, disk, desc);
         samples.push_back(measure(world, desc));
         sum += samples.back().errorPixels;
