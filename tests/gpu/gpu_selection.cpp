@@ -275,7 +275,8 @@ public:
 private:
     template <typename T>
     bool same(const std::vector<T>& expected, VkDeviceSize offset) {
-        return std::memcmp(expected.data(), back_.mapped().data() + offset, expected.size() * sizeof(T)) == 0;
+        return expected.empty() ||
+               std::memcmp(expected.data(), back_.mapped().data() + offset, expected.size() * sizeof(T)) == 0;
     }
 
     const Gpu& gpu_;
