@@ -68,15 +68,7 @@ Picture draw(Stage& stage, vulkan::InstanceHandle instance, const State& state, 
     return stage.read(stage.submit(view));
 }
 
-size_t pixelsApart(const Picture& a, const Picture& b) {
-    size_t count = 0;
-    for (size_t i = 0; i < a.pixels.size(); ++i) {
-        int most = 0;
-        for (int k = 0; k < 3; ++k) most = std::max(most, std::abs(int(a.pixels[i][k]) - int(b.pixels[i][k])));
-        count += most > 8;
-    }
-    return count;
-}
+constexpr int kApart = 8;
 
 vulkan::RendererConfig configOf(const AssetView& asset) {
     const AssetView* one = &asset;
@@ -105,8 +97,8 @@ void comparePoses(const Gpu& gpu, const AssetView& asset, uint32_t seed, float b
             const auto seen = size_t(
                 std::count_if(b.pixels.begin(), b.pixels.end(), [](const glm::u8vec4& p) { return !isMagenta(p); }));
             CHECK(seen > b.pixels.size() / 40);
-            CHECK(pixelsApart(a, b) <= seen / 60); // edges, and where it goes through itself
-            CHECK(pixelsApart(a, rest) > seen / 10);
+            CHECK(pixelsApart(a, b, kApart) <= seen / 60); // edges, and where it goes through itself
+            CHECK(pixelsApart(a, rest, kApart) > seen / 10);
         }
         XGC_REQUIRE_OK(device.renderer.clearPose(posed));
         CHECK(draw(device, posed, state, false, view).pixels == rest.pixels);

@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 #include <glm/gtc/type_precision.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <string>
@@ -62,6 +63,17 @@ struct Picture {
 
     const glm::u8vec4& at(uint32_t x, uint32_t y) const { return pixels[size_t(y) * width + x]; }
 };
+
+/// Pixels of which a channel differs by more than `tolerance`.
+inline size_t pixelsApart(const Picture& a, const Picture& b, int tolerance) {
+    size_t count = 0;
+    for (size_t i = 0; i < a.pixels.size(); ++i) {
+        int most = 0;
+        for (int k = 0; k < 4; ++k) most = std::max(most, std::abs(int(a.pixels[i][k]) - int(b.pixels[i][k])));
+        count += most > tolerance;
+    }
+    return count;
+}
 
 constexpr std::array<float, 4> kMagenta{1, 0, 1, 1};
 inline bool isMagenta(const glm::u8vec4& p) {
