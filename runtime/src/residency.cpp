@@ -520,15 +520,11 @@ std::span<const std::byte> Residency::bytes(uint32_t asset, uint32_t page) const
 std::span<const std::byte> Residency::rows(uint32_t asset, uint32_t page, StreamKind kind, uint32_t set) const {
     const std::span<const std::byte> all = bytes(asset, page);
     if (all.empty()) return {};
-    const AssetView& tables = impl_->at(asset).tables;
-    uint64_t at = 0;
-    for (const StreamRecord& s :
-         tables.streams.subspan(tables.pages[page].firstStream, tables.pages[page].streamCount)) {
-        at = alignUp(at);
-        if (s.kind == kind && s.set == set) return all.subspan(size_t(at), size_t(s.rawBytes));
-        at += s.rawBytes;
-    }
-    return {};
+    std::span<const std::byte> found;
+    forStreams(impl_->at(asset).tables, page, all, [&](const StreamRecord& s, std::span<const std::byte> elements) {
+        if (s.kind == kind && s.set == set) found = elements;
+    });
+    return found;
 }
 
 const std::byte* Residency::row(uint32_t asset, StreamKind kind, uint32_t set, uint32_t row) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "memory.h"
+#include "open.h"
 
 #include <xgc/residency.h>
 
@@ -80,6 +81,18 @@ private:
     bool findNeeds();
     bool listMembers();
 };
+
+/// visit(record, bytes) for each stream of a page, of its bytes as they lie uncompressed.
+template <typename Visit>
+void forStreams(const AssetView& tables, uint32_t page, std::span<const std::byte> bytes, const Visit& visit) {
+    const format::PageRecord& record = tables.pages[page];
+    uint64_t at = 0;
+    for (const format::StreamRecord& s : tables.streams.subspan(record.firstStream, record.streamCount)) {
+        at = alignUp(at);
+        visit(s, bytes.subspan(size_t(at), size_t(s.rawBytes)));
+        at += s.rawBytes;
+    }
+}
 
 /// Checks a page's bytes and enters it. `collapse`: of the slot's rows, which begin at `firstRow`. On failure nothing
 /// is entered.

@@ -1,7 +1,4 @@
 #include "residency.h"
-
-#include "open.h"
-
 #include <algorithm>
 
 // What a patch needs. A patch q at a level of tier t lowers the domains that it shares, and so the lists by which its

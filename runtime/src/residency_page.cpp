@@ -25,10 +25,7 @@ struct Streams {
 
 Streams streamsOf(const AssetView& v, uint32_t page, std::span<const std::byte> bytes) {
     Streams out;
-    uint64_t at = 0;
-    for (const StreamRecord& s : v.streams.subspan(v.pages[page].firstStream, v.pages[page].streamCount)) {
-        const std::span<const std::byte> elements = bytes.subspan(alignUp(at), s.rawBytes);
-        at = alignUp(at) + s.rawBytes;
+    forStreams(v, page, bytes, [&](const StreamRecord& s, std::span<const std::byte> elements) {
         if (s.kind == StreamKind::position) out.positions = elements;
         if (s.kind == StreamKind::collapseLevel) out.collapse = elements;
         if (s.kind == StreamKind::birthLevel) out.births = elements;
@@ -36,7 +33,7 @@ Streams streamsOf(const AssetView& v, uint32_t page, std::span<const std::byte> 
         if (s.kind == StreamKind::parentWide) out.wideParents = elements;
         if (s.kind == StreamKind::cornerNarrow) out.narrowCorners = elements;
         if (s.kind == StreamKind::cornerWide) out.wideCorners = elements;
-    }
+    });
     return out;
 }
 
@@ -103,15 +100,10 @@ Status checkJoints(const StreamedAsset& a, uint32_t page, std::span<const std::b
     if (a.tables.joints.empty() || a.contents[page].rows == 0) return {};
     std::array<VertexStream, AssetView::kMaxVertexStreams> streams;
     uint32_t count = 0;
-    uint64_t at = 0;
-    const PageRecord& record = a.tables.pages[page];
-    for (const StreamRecord& s : a.tables.streams.subspan(record.firstStream, record.streamCount)) {
-        at = alignUp(at);
+    forStreams(a.tables, page, bytes, [&](const StreamRecord& s, std::span<const std::byte> elements) {
         const bool ofSkin = s.kind == StreamKind::joints || s.kind == StreamKind::weights;
-        if (ofSkin && count < streams.size())
-            streams[count++] = {s.kind, s.format, s.set, s.stride, s.count, bytes.subspan(at, s.rawBytes)};
-        at += s.rawBytes;
-    }
+        if (ofSkin && count < streams.size()) streams[count++] = {s.kind, s.format, s.set, s.stride, s.count, elements};
+    });
     Status status = checkSkinRows(a.tables, {streams.data(), count}, a.contents[page].rows);
     status.element = page;
     return status;
